@@ -364,15 +364,3 @@ def _parts(scene: Scene) -> Iterator[str]:
         yield LIGHTS[scene.light]
     if scene.surface:
         yield SURFACES[scene.surface].said
-
-
-UNBUILT = {
-    "actors": "single actors",
-    "parked": "rows of parked cars",
-}
-"""The parts of a scene that are read and told, but that no drive has yet."""
-
-
-def unbuilt(scene: Scene) -> tuple[str, ...]:
-    """Returns the names of what a scene asks for and no drive has yet."""
-    return tuple(name for field, name in UNBUILT.items() if getattr(scene, field))

@@ -9,6 +9,7 @@ when it is needed."""
 import re
 from collections.abc import Mapping
 from dataclasses import replace
+from statistics import mean
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import (
@@ -398,6 +399,15 @@ class World(BaseModel):
         wanted = {"lanes": brief.lanes_text, "centre_line": brief.centre}
         changes = {name: value for name, value in wanted.items() if value is not None and name not in given}
         return self.changed(**changes) if changes else self
+
+    @property
+    def first_speed(self) -> float:
+        """The speed in m/s at which the tested car starts to roll among others: that of the scene, or the
+        middle of its range, else the speed limit."""
+        speed = self.scene.speed
+        if speed is None:
+            return self.limits.speed_limit
+        return mean(bound for bound in (speed.lo, speed.hi) if bound is not None) / KMH
 
     def profile_of(self, road: "Road") -> "Profile":
         """Returns the Profile of a road: ``road.profile`` or, if that is None, one made from ``section``.

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from roadgpt.geometry import wrap_angle
-from roadgpt.network.network import Leg, Network, RoadEnd
+from roadgpt.network.network import Junction, Leg, Network, RoadEnd
 from roadgpt.traffic.following import GREEN, RED, YELLOW
 from roadgpt.traffic.lane_map import IntArray
 
@@ -54,6 +54,14 @@ class Lights:
         if not 0.0 <= since < GREEN_FOR + YELLOW_FOR:
             return RED
         return GREEN if since < GREEN_FOR else YELLOW
+
+    def show_green(self, junction: Junction, end: RoadEnd, time: float) -> None:
+        """Moves the cycle of a junction so that one of its arms is in the middle of its green at a time."""
+        phase, count, _ = self.phases[end]
+        begin = (phase * PHASE + GREEN_FOR / 2 - time) % (PHASE * count)
+        for arm in junction.arms:
+            if arm.end in self.phases:
+                self.phases[arm.end] = (*self.phases[arm.end][:2], begin)
 
     def of_lanes(self, ids: Mapping[Leg, RoadEnd], time: float) -> IntArray:
         """Returns what traffic in lanes sees; ``ids`` has the end of the road to which each lane leads."""

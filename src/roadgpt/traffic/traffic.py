@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 import numpy as np
 
 from roadgpt import plugins
+from roadgpt.network import network_of
 from roadgpt.traffic.actor import STEP, TESTED, Actor, FloatArray, TestedCar, Tracks, rounded
 from roadgpt.traffic.recording import read_recording
 
@@ -24,6 +25,8 @@ class Stage(NamedTuple):
     seed: int
     tracks: Tracks | None = None
     """Recorded tracks to replay."""
+    lights: "Lights | None" = None
+    """The traffic lights, which run for everybody; None where nobody looks at them."""
 
 
 class Mover(Protocol):
@@ -48,13 +51,11 @@ class Mover(Protocol):
 class Traffic:
     """Everybody besides the tested car, during one drive."""
 
-    def __init__(self, movers: Sequence[Mover]) -> None:
+    def __init__(self, movers: Sequence[Mover], lights: "Lights | None" = None) -> None:
         self.actors: list[Actor] = []
         """All actors so far, in the order in which they were made."""
-        self.lights: Lights | None = next(
-            (mover.lights for mover in movers if hasattr(mover, "lights")), None
-        )
-        """The traffic lights, which a mover runs; None if none does, and they stay green."""
+        self.lights = lights
+        """The traffic lights; None if they stay green."""
         self._movers = [(mover, list[int]()) for mover in movers]  # with the places of their actors
         self._samples: list[FloatArray] = []
         self._sizes = np.empty((0, 2))
@@ -136,6 +137,21 @@ def begin(
         "script": bool(scene.actors or scene.parked),
         "idm": scene.has_flow,
     }
-    stage = Stage(road, world, seed, replay)
+    stage = Stage(road, world, seed, replay, _lights(road, world, seed))
     movers = [plugins.find("movers", name)(stage) for name, needed in is_needed.items() if needed]
-    return Traffic(movers) if movers else None
+    return Traffic(movers, stage.lights) if movers else None
+
+
+def _lights(road: "Road", world: "World", seed: int) -> "Lights | None":
+    """Returns the lights of the map if the scene moves anybody. If somebody is to run a red light, the tested
+    car has green wherever it comes at its first speed."""
+    if not (world.scene.has_flow or world.scene.actors):
+        return None
+    from roadgpt.traffic.lights import Lights
+
+    lights = Lights(network_of(road, world), seed)
+    if any(action.what == "run_light" for role in world.scene.actors for action in role.actions):
+        for passage in road.passages:
+            if passage.control == "lights":
+                lights.show_green(passage.entered, passage.arrival, passage.start / world.first_speed)
+    return lights

@@ -1,5 +1,7 @@
 """Defines the Way: a line on the ground that an actor follows."""
 
+import math
+from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -46,18 +48,33 @@ class Way:
         return float(self.stations[-1])
 
     @cached_property
-    def _curvature(self) -> FloatArray:
-        return np.asarray(np.gradient(self.points[:, 3], self.stations))
+    def _rows(self) -> list[list[float]]:
+        """The points with the curvature of the way there."""
+        bends = np.gradient(self.points[:, 3], self.stations)
+        rows: list[list[float]] = np.column_stack([self.points, bends]).tolist()
+        return rows
 
-    def pose(self, s: float, t: float = 0.0) -> FloatArray:
+    @cached_property
+    def _places(self) -> list[float]:
+        places: list[float] = self.stations.tolist()
+        return places
+
+    def _at(self, s: float) -> list[float]:
+        places = self._places
+        n = min(max(bisect_right(places, s) - 1, 0), len(places) - 2)
+        share = min(max((s - places[n]) / (places[n + 1] - places[n]), 0.0), 1.0)
+        before, after = self._rows[n : n + 2]
+        return [a + share * (b - a) for a, b in zip(before, after, strict=True)]
+
+    def pose(self, s: float, t: float = 0.0) -> tuple[float, float, float, float]:
         """Returns x, y, z and heading at a station, ``t`` metres to the left of the way. Before its begin
         and after its end it goes straight on."""
-        x, y, z, heading = (np.interp(s, self.stations, column) for column in self.points.T)
-        beyond = s - float(np.clip(s, 0.0, self.length))
-        cos, sin = np.cos(heading), np.sin(heading)
-        return np.array([x + beyond * cos - t * sin, y + beyond * sin + t * cos, z, heading])
+        x, y, z, heading, _ = self._at(s)
+        beyond = s - min(max(s, 0.0), self.length)
+        cos, sin = math.cos(heading), math.sin(heading)
+        return x + beyond * cos - t * sin, y + beyond * sin + t * cos, z, heading
 
     def stretch(self, s: float, t: float) -> float:
         """Returns how many metres somebody drives ``t`` metres to the left of the way per metre of it."""
-        bend = float(np.interp(s, self.stations, self._curvature, left=0.0, right=0.0))
+        bend = self._at(s)[4] if t and 0.0 < s < self.length else 0.0
         return max(1.0 - bend * t, LEAST_STRETCH)

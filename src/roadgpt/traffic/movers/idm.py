@@ -65,7 +65,7 @@ class IdmMover:
         road, network = stage.road, network_of(stage.road, stage.world)
         lanes = lanes_of(network)
         self.lanes, self.ids = lane_map(lanes, stage.world.limits.speed_limit, _near(lanes, road))
-        self.lights = Lights(network, stage.seed)
+        self.lights = stage.lights or Lights(network, stage.seed)
         self._ends = {key: RoadEnd(key.road, "end" if lanes[key].is_along else "start") for key in self.ids}
         self._number = {key: n for n, key in enumerate(self.ids)}
         self._path = _path(road, legs_of(road, stage.world), self._number)

@@ -4,7 +4,6 @@ The car can be changed: ``MujocoSimulator(replace(ETK_LIKE, max_drive_accelerati
 weaker acceleration."""
 
 from operator import itemgetter
-from statistics import mean
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,15 +29,6 @@ _NAMES = tuple(COLUMNS)
 _SEEN = itemgetter(
     *map(_NAMES.index, ["x", "y", "z", "heading", "speed", "yaw_rate", "s", "t", "steer", "vx", "vy"])
 )
-
-
-def first_speed(world: "World") -> float:
-    """Returns the speed in m/s at which the car starts to roll among others: that of the scene, or the middle
-    of its range, else the speed limit."""
-    speed = world.scene.speed
-    if speed is None:
-        return world.limits.speed_limit
-    return mean(bound for bound in (speed.lo, speed.hi) if bound is not None) / 3.6
 
 
 class MujocoSimulator:
@@ -74,7 +64,7 @@ class MujocoSimulator:
         guard.start(road, world, seed)
         middle = float(world.profile_of(road).middle(monitor.start))
         rolls = traffic is not None or world.scene.speed is not None
-        speed = first_speed(world) if rolls else 0.0
+        speed = world.first_speed if rolls else 0.0
         vehicle.put(monitor.start, middle + self.start_offset, speed)
         rows, step = [vehicle.row.tobytes()], 0
         while True:

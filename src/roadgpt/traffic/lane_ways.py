@@ -1,0 +1,289 @@
+"""Finds ways along the lanes of the map that meet the tested car's: through a junction, on the ring of a
+roundabout, from a ramp, and off its road."""
+
+import math
+from bisect import bisect_right
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from roadgpt.brief.scene import DOINGS, Role, What
+from roadgpt.errors import UsageError
+from roadgpt.geometry import wrap_angle
+from roadgpt.network import Passage, Route, is_route
+from roadgpt.network.lane_along import LONGEST, SHARE
+from roadgpt.network.lanes import HEADROOM, STRAIGHT_AHEAD, Lanes, lanes_of
+from roadgpt.network.network import Leg
+from roadgpt.traffic.actor import FloatArray
+from roadgpt.traffic.lane_map import LEAST
+from roadgpt.traffic.way import SPACING, Way
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road, World
+
+REACH = 300.0  # m of a way before and behind the lanes for which it was chosen, as far as there are others
+OPPOSITE = math.radians(40.0)  # an arm that is farther from straight ahead is on the left or on the right
+MERGED = 0.5  # m between the middles of two ways that have become one
+AROUND = 30.0  # m of the tested car's path before and behind a junction on which somebody may meet it
+TURNS: Mapping[What, tuple[float, float, tuple[bool, ...]]] = {
+    "cross": (0.0, math.radians(60.0), (False, True)),
+    "run_light": (0.0, math.pi, (False, True)),
+    "run_sign": (0.0, math.pi, (False, True)),
+    "turn_across": (OPPOSITE, math.pi, (False,)),
+    "turn_in": (STRAIGHT_AHEAD, math.pi, (True,)),
+}
+"""By what angles somebody turns in a junction, the least and the most, and whether into the tested car's
+lane."""
+
+
+class Around(NamedTuple):
+    """What is around the tested car: its route, the lanes of the map, its path, and its passages where
+    somebody is to be."""
+
+    route: Route
+    lanes: Lanes
+    path: Way
+    passages: Sequence[Passage]
+
+    def turns(self, passage: Passage, start: Leg) -> Iterator[tuple[float, tuple[Leg, ...]]]:
+        """Yields the ways through a junction or a roundabout, from a lane that leads into it or one of the
+        ring: the change of heading in radians, positive to the left, and the lanes."""
+        network = self.route.network
+        ring = network.roundabout_of.get(passage.entered.id)
+        junctions = tuple(map(network.junction, ring.junctions)) if ring else (passage.entered,)
+        inside, waiting = {each.id for each in network.inside(junctions)}, list[tuple[Leg, ...]]([(start,)])
+        while waiting:
+            way = waiting.pop(0)
+            for each in self.lanes[way[-1]].successors:
+                if each.road in inside:
+                    waiting += [(*way, each)] * (each not in way)
+                    continue
+                first, last = self.lanes[start], self.lanes[each]
+                yield float(wrap_angle(last.heading(0.0) - first.heading(first.length))), (*way, each)
+
+    def before(self, passage: Passage) -> Leg:
+        """Returns the lane in which the tested car comes to a passage."""
+        return self.route.legs[bisect_right(self.route.starts, passage.start - SPACING) - 1]
+
+    def whole(self, legs: Sequence[Leg]) -> tuple[FloatArray, float]:
+        """Returns the points of a way that comes to the first of some lanes as straight as possible, and not
+        along the tested car's, and goes on so behind the last one; and where the first lane begins."""
+        before, behind = list[Leg](), list[Leg]()
+        for more, first in ((before, legs[0]), (behind, legs[-1])):
+            here, metres = self.lanes[first], 0.0
+            while metres < REACH:
+                near = here.successors if more is behind else {*here.predecessors} - {*self.route.legs}
+                free = [self.lanes[each] for each in near if each not in (*legs, *before, *behind)]
+                if not free:
+                    break
+                here = min(free, key=lambda lane: (abs(lane.turn), lane.id))
+                more.append(here.id)
+                metres += here.length
+        parts = list[FloatArray]()
+        for lane in map(self.lanes.__getitem__, (*before[::-1], *legs, *behind)):
+            rows = lane.at(np.linspace(0.0, lane.length, max(2, math.ceil(lane.length / SPACING) + 1)))
+            is_joined = bool(parts) and math.dist(parts[-1][-1, :2], rows[0, :2]) < SPACING / 2
+            parts.append(rows[1:] if is_joined else rows)
+        return with_headings(np.concatenate(parts)), sum(self.lanes[each].length for each in before)
+
+    def met(self, legs: Sequence[Leg], passage: Passage, since: int = 0) -> Way | None:
+        """Returns the way along lanes with the first place at a passage where it crosses the tested car's
+        path or, if they have a lane in common, becomes one with it. Lanes before number ``since`` do not
+        count. None if there is no such place."""
+        import shapely
+
+        points, begin = self.whole(legs)
+        begin += sum(self.lanes[each].length for each in legs[:since])
+        way, path = Way(points), self.path
+        one, other = (shapely.LineString(each.points[:, :2]) for each in (way, path))
+        if {*legs[since:]} & {*self.route.legs}:
+            places = shapely.points(points[:, :2])
+            places = places[shapely.distance(places, other) <= MERGED]
+        else:
+            places = shapely.points(shapely.get_coordinates(one.intersection(other)))
+        own, along = shapely.line_locate_point(one, places), shapely.line_locate_point(other, places)
+        apart = np.interp(own, way.stations, points[:, 2]) - np.interp(
+            along, path.stations, path.points[:, 2]
+        )
+        s = np.interp(along, path.stations, stations_of(path))
+        is_there = (own >= begin) & (np.abs(apart) < HEADROOM)
+        is_there &= (s >= passage.start - AROUND) & (s <= passage.end + AROUND)
+        return (
+            Way(points, min(zip(own[is_there].tolist(), s[is_there].tolist(), strict=True)))
+            if is_there.any()
+            else None
+        )
+
+
+def stations_of(path: Way) -> FloatArray:
+    """Returns the stations along the tested car's road of the points of its path."""
+    assert path.road_stations is not None
+    return path.road_stations
+
+
+def with_headings(xyz: FloatArray) -> FloatArray:
+    """Returns points ``(n, 3)`` with the direction from those before to those behind."""
+    dx, dy = np.gradient(xyz[:, :2], axis=0).T
+    return np.column_stack([xyz, np.unwrap(np.arctan2(dy, dx))])
+
+
+def along_lanes(role: Role, near: float, road: "Road", world: "World") -> Way:
+    """Returns the way of somebody at a junction, in a roundabout, on a ramp, or who turns off; see ``way_of``
+    in ``places``."""
+    turns_off = "turn_off" in (each.what for each in role.actions) and role.where != "roundabout"
+    place = "turn_off" if turns_off else role.where if role.where in WAYS else "junction"
+    passages, mark = road.passages, role.at
+    if mark and mark.of == "junction":
+        passages = passages[mark.number - 1 if mark.number > 0 else mark.number :][:1]
+    ways = (
+        WAYS[place](role, Around(road, lanes_of(road.network), Way.along(road, world), passages))
+        if (is_route(road))
+        else ()
+    )
+    for way in ways:
+        if way is not None and way.meets is not None and way.meets[1] >= near:
+            return way
+    of = f"the {role.side}{' side' * (role.side == 'opposite')}" if role.side else "another side"
+    wanted = {
+        "junction": f"junction after {near:.0f} m with a road from {of}, from which somebody who "
+        f"{DOINGS[_turn(role)].said} meets the tested car",
+        "roundabout": f"roundabout after {near:.0f} m",
+        "ramp": f"ramp that joins its lane after {near:.0f} m; write for example merge main",
+        "turn_off": f"junction after {near:.0f} m where somebody {role.where} can turn off",
+    }
+    raise UsageError(f"the route passes no {wanted[place]}")
+
+
+def _turn(role: Role) -> What:
+    return next((each.what for each in role.actions if each.what in TURNS), "cross")
+
+
+def _through_junction(role: Role, around: Around) -> Iterator[Way | None]:
+    """Yields the ways from an arm of a junction through it: straight across the tested car's path or, for who
+    turns, across it or into it."""
+    what, network, route = _turn(role), around.route.network, around.route
+    usual = ["left", "right", "opposite"] if network.left_hand else ["right", "left", "opposite"]
+    sides = [str(role.side)] if role.side else usual[::-1] if what == "turn_across" else usual
+    if role.where == "oncoming":
+        sides = ["opposite"]
+    elif what == "run_light":  # opposite arms have green together
+        sides = [side for side in sides if side != "opposite"]
+    least, most, kinds = TURNS[what]
+    for passage in around.passages:
+        arms = list[tuple[int, float, list[Leg]]]()
+        back = 0.0
+        for end in passage.arms:  # the road of arrival is the first one
+            member = network.road(end.road)
+            out = float(member.road.heading(member.road.length)) + math.pi
+            out = out if end.contact == "end" else float(member.road.heading(0.0))
+            back = out if end == passage.arrival else back
+            turn = float(wrap_angle(out - back - math.pi))  # from straight ahead
+            side = "opposite" if abs(turn) <= OPPOSITE else "left" if turn > 0 else "right"
+            if end != passage.arrival and side in sides:
+                lanes = [Leg(end.road, each) for each in network.lanes_into(end)]
+                off = abs(turn) if side == "opposite" else abs(abs(turn) - math.pi / 2)
+                arms.append((sides.index(side), off, lanes))
+        for _, _, lanes in sorted(arms):
+            turns = [each for lane in lanes for each in around.turns(passage, lane)]
+            for by, legs in sorted(turns, key=lambda each: (abs(each[0]), each[1])):
+                is_fit = least <= abs(by) <= most and (legs[-1] in route.legs) in kinds
+                if what == "run_light":
+                    is_fit &= around.lanes[legs[0]].control == "lights"
+                if what == "run_sign":
+                    is_fit &= bool({*around.lanes.gives_way_to(legs[1])} & {*route.legs})
+                if is_fit:
+                    yield around.met(legs, passage)
+
+
+def _on_ring(role: Role, around: Around) -> Iterator[Way | None]:
+    """Yields the ways around the ring of a roundabout, past the place where the tested car enters, to exits
+    that it does not take."""
+    del role
+    network = around.route.network
+    for passage in around.passages:
+        if (ring := network.roundabout_of.get(passage.entered.id)) is None:
+            continue
+        own = around.route.legs[around.route.legs.index(around.before(passage)) :]
+        back = [next(each for each in own if each.road in ring.ring)]
+        while True:
+            more = [
+                each
+                for each in around.lanes[back[-1]].predecessors
+                if each.road in ring.ring or network.connection_of[each.road][1].incoming.road in ring.ring
+            ]
+            if not more or more[0] in back:
+                break
+            back.append(more[0])
+        for _, onward in around.turns(passage, back[0]):
+            if onward[-1].road != passage.departure.road:
+                yield around.met((*back[:0:-1], *onward), passage, max(len(back) - 2, 0))
+
+
+def _from_ramp(role: Role, around: Around) -> Iterator[Way | None]:
+    """Yields the ways along a lane that ends beside the tested car's, such as one for acceleration behind a
+    ramp, and into that; and along a ramp that joins it without such a lane."""
+    del role
+    lanes, legs = around.lanes, around.route.legs
+    for own in map(lanes.__getitem__, legs):
+        for key in (own.left, own.right):
+            if key is not None and key not in legs and own.successors and not lanes[key].successors:
+                points, begin = around.whole([key])
+                s = np.arange(0.0, lanes[key].length, SPACING)
+                wide = s[lanes[key].width(s) >= LEAST]
+                if len(wide):
+                    yield _into(around.path, Way(points), begin + wide[0], begin + wide[-1])
+    for passage in around.passages:
+        for end in passage.arms[1:] if passage.entered.kind == "merge" else ():
+            for each in around.route.network.lanes_into(end):
+                for _, onward in around.turns(passage, Leg(end.road, each)):
+                    yield around.met(onward, passage) if onward[-1] in legs else None
+
+
+def _into(path: Way, way: Way, begin: float, end: float) -> Way | None:
+    """Returns the way that changes to the tested car's path in the middle between two of its stations."""
+    import shapely
+
+    length = min(LONGEST, SHARE * (end - begin))
+    kept = way.stations < (begin + end - length) / 2
+    if kept.sum() < 2:
+        return None
+    x, y = way.points[kept][-1, :2]
+    at = float(shapely.LineString(path.points[:, :2]).project(shapely.Point(x, y)))
+    ahead, here = path.stations > at, path.pose(at)
+    cos, sin = np.cos(path.points[ahead, 3]), np.sin(path.points[ahead, 3])
+    aside = (y - here[1]) * math.cos(here[3]) - (x - here[0]) * math.sin(here[3])
+    left = aside * (1 + np.cos(np.pi * np.minimum((path.stations[ahead] - at) / length, 1.0))) / 2
+    rest = path.points[ahead, :3] + np.column_stack([-left * sin, left * cos, 0 * left])
+    whole = Way(with_headings(np.vstack([way.points[kept, :3], rest])))
+    first = int((np.abs(left) <= MERGED).argmax())
+    met = float(whole.stations[kept.sum() + first]), float(stations_of(path)[ahead][first])
+    return Way(whole.points, met)
+
+
+def _turning_off(role: Role, around: Around) -> Iterator[Way | None]:
+    """Yields the ways along the tested car's lane that leave its road at a junction, which is where they meet
+    last."""
+    side = next(each.side for each in role.actions if each.what == "turn_off")
+    for passage in around.passages if role.where in ("ahead", "behind") else ():
+        turns = sorted(around.turns(passage, around.before(passage)), key=lambda each: -abs(each[0]))
+        for by, legs in turns:
+            is_there = not side or (abs(by) > STRAIGHT_AHEAD and (by > 0) == (side == "left"))
+            if legs[-1].road == passage.departure.road or not is_there:
+                continue
+            own = stations_of(around.path)
+            kept = own < passage.start - SPACING / 2
+            rest = around.whole(legs[1:])[0]
+            way = Way(with_headings(np.vstack([around.path.points[kept, :3], rest[:, :3]])))
+            begin = float(way.stations[kept.sum()])
+            own = np.r_[own[kept], passage.start + way.stations[kept.sum() :] - begin]
+            yield Way(way.points, (begin, passage.start), own)
+
+
+WAYS: Mapping[str, Callable[[Role, Around], Iterator[Way | None]]] = {
+    "junction": _through_junction,
+    "roundabout": _on_ring,
+    "ramp": _from_ramp,
+    "turn_off": _turning_off,
+}
+"""The ways of those at a place, or who turn off, the best ones first."""

@@ -1,0 +1,180 @@
+"""Finds where the others of a scene are and which ways they go: geometry without time."""
+
+import math
+from bisect import bisect_right
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from roadgpt.brief.amount import span
+from roadgpt.brief.junctions import Side
+from roadgpt.brief.scene import ActorKind, Role, Scene, Where
+from roadgpt.errors import UsageError
+from roadgpt.network import is_route, network_of
+from roadgpt.network.lanes import lanes_of
+from roadgpt.network.markings import CROSSWALK
+from roadgpt.road.road import GOAL
+from roadgpt.traffic.actor import SIZES, FloatArray, corners
+from roadgpt.traffic.lane_map import LEAST
+from roadgpt.traffic.lane_ways import MERGED, along_lanes, with_headings
+from roadgpt.traffic.way import SPACING, Way
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road, World
+
+BESIDE = 2.0  # m, from the outermost driving lane to the middle of who stands or walks beside it
+CLEAR = 0.15  # m, from a driving lane to a parked vehicle: 1 m to a car in a lane of 3.5 m (Euro NCAP, CPNCO)
+BEFORE, BEHIND = 5.0, 8.0  # m, from a junction to those who cross the road before and behind it
+DRIVEWAY = 6.0  # m, radius in which somebody turns from beside the road into a lane
+PLACE = 7.0  # m of a row for each parked vehicle: at least 6.5 m, of a delivery van
+FREE, VANS = 0.15, 0.1  # shares of the places that are free, and of vans among the parked vehicles
+KEPT_FREE = 5.0  # m before and behind junctions and crosswalks (Germany, StVO, section 12)
+ROOM = 1.5  # m, from the middle of a way to the vehicles that are parked beside it
+SIGN = {"left": 1.0, "right": -1.0}
+
+
+def offset_of(where: Where, side: Side | None, s: float, road: "Road", world: "World", width: float) -> float:
+    """Returns how many metres to the left of the tested car's path, at a station of its road, the middle of a
+    place is: of the next "lane" of the same direction or the one beyond, which is "far", of the nearest
+    "oncoming" lane, of a box that is "parked" beside the driving lanes, or of who is "beside" them.
+
+    Without a side, "lane" is on the side of the centre line if there is one, and the others are on the outer
+    side. "far" is beside the road where there is no such lane. Within junctions, the offset changes evenly
+    from that before to that behind it. Raises UsageError if there is no such place."""
+    for passage in road.passages:
+        if passage.start < s < passage.end and where in ("lane", "far", "oncoming"):
+            ends = [passage.start - SPACING, passage.end + SPACING]
+            return float(np.interp(s, ends, [offset_of(where, side, e, road, world, width) for e in ends]))
+    profile = world.profile_of(road)
+    outer: Side = "left" if profile.left_hand else "right"
+    inner: Side = "right" if profile.left_hand else "left"
+    if where in ("lane", "far", "oncoming"):
+        beside = _lanes_beside(s, road, world, width)
+        sides = {"oncoming": ["oncoming"]}.get(where, [side] if side else [inner, outer])
+        found = [beside[each][where == "far"] for each in sides if len(beside[each]) > (where == "far")]
+        if found:
+            return found[0]
+        if where != "far":
+            lacks = "oncoming lane" if where == "oncoming" else "second lane of the same direction"
+            on = f" on the {side}" if side else ""
+            raise UsageError(f"the road has no {lacks}{on} at {s:.0f} m; give it one, or another place")
+    side = side or outer
+    edges, sign = profile.edges(s), SIGN[side]
+    edge = float((edges.left if side == "left" else edges.right) - profile.middle(s))
+    return edge + sign * (CLEAR + width / 2 if where == "parked" else BESIDE)
+
+
+def _lanes_beside(s: float, road: "Road", world: "World", width: float) -> dict[str, list[float]]:
+    """Returns the offsets of the lanes of this width of the tested car's direction, to its left and to its
+    right, and of the oncoming ones, each from the nearest to the farthest."""
+    profile = world.profile_of(road)
+    station, t, lane = s, float(profile.middle(s)), profile.driven_id
+    if is_route(road):
+        leg = road.legs[min(max(bisect_right(road.starts, s) - 1, 0), len(road.legs) - 1)]
+        member, lane = road.network.road(leg.road), leg.lane
+        station, t = (float(each) for each in member.road.locate(*road.at(s, t)[:2]))
+        profile = member.profile
+    is_along = profile.leads_along(lane)
+    ids = (profile.along_ids, profile.against_ids)[:: 1 if is_along else -1]
+    edges = [(each, profile.edges_of(each, station)) for each in (*ids[0], *ids[1])]
+    found: dict[str, list[float]] = {"left": [], "right": [], "oncoming": []}
+    for each, (left, right) in edges:
+        if each != lane and left - right >= width:
+            offset = float((left + right) / 2 - t) * (1 if is_along else -1)
+            same = "left" if (each > lane) == is_along else "right"
+            found[same if each in ids[0] else "oncoming"].append(offset)
+    return {name: sorted(offsets, key=abs) for name, offsets in found.items()}
+
+
+def way_of(role: Role, near: float, road: "Road", world: "World") -> Way:
+    """Returns the way of somebody who crosses the tested car's path, comes to it along other lanes, or turns
+    off. ``meets`` is where, at station ``near`` of the tested car's road or later. The numbers of ``role``
+    are no ranges. Raises UsageError if the road has no such place."""
+    turns_off = "turn_off" in (each.what for each in role.actions)
+    if turns_off or role.where in ("junction", "roundabout", "ramp", "oncoming"):
+        return along_lanes(role, near, road, world)
+    s = _crosswalk(near, road) if role.where == "crosswalk" else near
+    for passage in road.passages if role.where != "crosswalk" else ():
+        if passage.start - BEFORE < s < passage.end + BEHIND:
+            s = passage.end + BEHIND
+    if near > road.length - GOAL:
+        raise UsageError(f"the road ends at {road.length:.0f} m, before anybody can cross it; make it longer")
+    return _across(role, s if s <= road.length - GOAL else near, road, world)
+
+
+def _crosswalk(near: float, road: "Road") -> float:
+    away = CROSSWALK[0] + CROSSWALK[1] / 2
+    crossed = road.network.crossed if is_route(road) else ()
+    for passage in road.passages:
+        for end, s in ((passage.arrival, passage.start - away), (passage.departure, passage.end + away)):
+            if end in crossed and s >= near:
+                return float(s)
+    raise UsageError(f"the route passes no crosswalk after {near:.0f} m; write crosswalk behind a junction")
+
+
+def _across(role: Role, s: float, road: "Road", world: "World") -> Way:
+    """Returns the way straight across the road, at right angles to the tested car's path, or into its lane
+    for who turns in."""
+    profile = world.profile_of(road)
+    edges, rims, middle = profile.edges(s), profile.rims(s), float(profile.middle(s))
+    reach = {"left": float(edges.left) - middle, "right": middle - float(edges.right)}
+    side = str(role.side or ("left" if profile.left_hand else "right"))
+    begin = span(role.away).lo if role.away else reach[side] + BESIDE
+    other = "right" if side == "left" else "left"
+    across = np.linspace(
+        begin, -reach[other] - BESIDE, math.ceil((begin + reach[other] + BESIDE) / SPACING) + 1
+    )
+    along = np.full(len(across), s)
+    if "turn_in" in (each.what for each in role.actions):
+        turn = np.linspace(0.0, math.pi / 2, math.ceil(DRIVEWAY * math.pi / 2 / SPACING) + 1)
+        rest = np.arange(s + SPACING, road.length, SPACING)
+        across = np.r_[across[across > DRIVEWAY], DRIVEWAY * (1 - np.sin(turn)), 0 * rest]
+        along = np.r_[
+            along[: len(across) - len(turn) - len(rest)] - DRIVEWAY, s - DRIVEWAY * np.cos(turn), rest
+        ]
+    t = profile.middle(along) + SIGN[side] * across
+    xyz = road.at(along, t)
+    xyz[:, 2] = road.at(along, np.clip(t, rims.right, rims.left))[:, 2]
+    way = Way(with_headings(xyz))
+    first = int((across <= MERGED).argmax())
+    met = (float(way.stations[first]), float(along[first])) if along[-1] > s else (begin, s)
+    return Way(way.points, met)
+
+
+def parked_rows(
+    scene: Scene, road: "Road", world: "World", seed: int, free: Sequence[FloatArray] = ()
+) -> list[tuple[ActorKind, FloatArray]]:
+    """Returns the cars and vans that are parked in rows along the road, each with its state. Nobody is parked
+    in or close to junctions and crosswalks, in driving lanes, such as in a tight bend, or close to the
+    lines in ``free``, whose first columns are x and y."""
+    import shapely
+
+    rng = np.random.default_rng([seed, len(scene.actors), len(scene.parked)])
+    lanes, middle = lanes_of(network_of(road, world)), world.profile_of(road).middle
+    outer = "left" if world.profile_of(road).left_hand else "right"
+    crossed = road.network.crossed if is_route(road) else ()
+    kept = [
+        (
+            each.start - KEPT_FREE - sum(CROSSWALK) * (each.arrival in crossed),
+            each.end + KEPT_FREE + sum(CROSSWALK) * (each.departure in crossed),
+        )
+        for each in road.passages
+    ]
+    lines = [shapely.LineString(each[:, :2]).buffer(ROOM) for each in free]
+    found = list[tuple[ActorKind, FloatArray]]()
+    for side in scene.parked:
+        for s in np.arange(PLACE / 2, road.length - PLACE / 2, PLACE).tolist():
+            is_free, is_van = rng.random(2) < (FREE, VANS)
+            is_kept = any(start < s + PLACE / 2 and s - PLACE / 2 < end for start, end in kept)
+            if is_free or is_kept:
+                continue
+            kind: ActorKind = "van" if is_van else "car"
+            t = float(middle(s)) + offset_of("parked", side, s, road, world, SIZES[kind].width)
+            turned = side != outer and bool(_lanes_beside(s, road, world, LEAST)["oncoming"])
+            state = np.array([*road.at(s, t), float(road.heading(s)) + math.pi * turned, 0.0])
+            box = corners(state, SIZES[kind])
+            is_in_lane = any(each.lane.kind == "driving" for places in lanes.places(box) for each in places)
+            if not is_in_lane and not any(line.intersects(shapely.Polygon(box)) for line in lines):
+                found.append((kind, state))
+    return found
