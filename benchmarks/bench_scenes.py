@@ -28,10 +28,8 @@ from roadgpt.traffic.actor import HEADING, X, Y
 PLANS = [plan for plan in (*SIGNALS, *JUNCTIONS, *ROADS) if not plan.startswith("map")]
 DRIVERS = ("reference", "lane_centring", "beamng_like")
 STEP = 0.05  # s between two of esmini's poses
-REAR_AXLE, SHARE = (
-    -1.47,
-    0.3,
-)  # m, of the tested car; share of a vehicle's length from its middle to its rear axle
+REAR_AXLE = (-1.47, 0.0, -0.56)  # m, of the tested car on the ground, from its centre of gravity
+SHARE = 0.3  # of a vehicle's length, from its middle to its rear axle
 ROLLS = ("car", "van", "truck", "bus", "motorcycle", "bicycle")
 PLACE = 11  # columns from a name to x
 
@@ -95,14 +93,11 @@ def farthest(drive: Drive, name: str, rows: np.ndarray) -> float:
     """The largest distance in metres in plan while the drive lasts."""
     time, at = rows[:, 0], rows[:, 1:]
     if name == "Ego":
-        x, y, *angles = (
-            np.interp(time, drive["time"], sign * drive[key])
-            for key, sign in (("x", 1), ("y", 1), ("heading", 1), ("pitch", -1), ("roll", 1))
-        )
-        place = (
-            np.stack([x, y], -1)
-            + Rotation.from_euler("ZYX", np.stack(angles, -1)).apply(np.array(REAR_AXLE))[:, :2]
-        )
+        angles = [np.unwrap(drive["heading"]), -drive["pitch"], drive["roll"]]
+        columns = (np.interp(time, drive["time"], each) for each in (drive["x"], drive["y"], *angles))
+        x, y, *angles = columns
+        turn = Rotation.from_euler("ZYX", np.stack(angles, -1))
+        place = np.stack([x, y], -1) + turn.apply(REAR_AXLE)[:, :2]
     else:
         assert drive.others is not None
         number = next(n for n, each in enumerate(drive.others.actors) if each.name == name.split(",")[0])

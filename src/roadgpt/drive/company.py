@@ -12,11 +12,13 @@ from roadgpt.drive.drive import COLUMNS, Box, FloatArray
 from roadgpt.drive.view import LightAhead, Other
 from roadgpt.network.lanes import HEADROOM
 from roadgpt.traffic import STEP, TestedCar, Traffic
+from roadgpt.traffic.actor import bodies
 from roadgpt.traffic.boxes import touch
 
 if TYPE_CHECKING:
     from roadgpt.drive.drive_monitor import DriveMonitor
     from roadgpt.road import Road
+    from roadgpt.scene import Body
 
 SEEN = 200.0  # m, between the middles of the car and of another
 _PLACES = [[*COLUMNS].index(name) for name in ("x", "y", "z", "heading", "speed", "s", "t")]
@@ -88,6 +90,10 @@ class Company:
             self._monitor.touch(time)
         near = zip(self._order[:count].tolist(), self._seen[:count].tolist(), strict=True)
         return tuple([Other._make((looks[k][0], *where, *looks[k][1:])) for k, where in near])
+
+    def bodies(self, time: float) -> "list[Body]":
+        """Returns the bodies of the others at this time, for images."""
+        return bodies(self._traffic.actors, self._traffic.at(time))
 
     def lights(self, s: float, time: float) -> tuple[LightAhead, ...]:
         """Returns the lights ahead of station ``s`` of the route, and what they show at this time."""

@@ -48,14 +48,7 @@ SHAPES: dict[str, tuple[str, Any]] = {
 SLOWS, AROUND = 0.5, 0.2  # m/s^2, from which brake lights are on; s before and after, compared for it
 PRESSED = 0.05  # of the tested car's brake pedal
 RED = "#ff2a1f"
-STAR: dict[str, Any] = {
-    "marker": (8, 1),
-    "ms": 11,
-    "mfc": VERMILLION,
-    "mec": "white",
-    "mew": 0.8,
-    "zorder": 10.5,
-}
+STAR: dict[str, Any] = {"marker": (8, 1), "ms": 11, "mfc": VERMILLION, "mec": "white", "zorder": 10.5}
 TRAIL, STEP = 5.0, 0.2  # s of the way before the moment, and between its points
 SMALLEST = 4.5  # points, of the longer side of a box
 INSET = 2.1  # inches, the height of the inset
@@ -142,10 +135,9 @@ def key_of(run: Run) -> list[tuple[str, float, dict[str, Any]]]:
     kinds = {actor.kind for actor in others.actors}
     named = dict(look for kind, look in COLOURS.items() if kind in kinds)
     style = {"ms": 6, "mec": "white", "mew": 0.6, "ls": "none", "markevery": [0]}
-    looks = {"tested car": INK, **named}
     found = [
         (name, 0.06, {**style, "mfc": colour, "marker": SHAPES.get(name, "s")[0]})
-        for name, colour in looks.items()
+        for name, colour in {"tested car": INK, **named}.items()
     ]
     return [*found, ("brakes", 0.12, {"color": RED, "lw": 2.4})]
 
@@ -177,19 +169,15 @@ def draw_contact(figure: Figure, axes: Axes, run: Run, contact: Incident) -> Non
         np.stack([np.interp(before, run.drive["time"], run.drive[name]) for name in ("x", "y")], axis=-1),
         others.at(before)[:, number, [X, Y]],
     )
-    step = _step(run, contact.at_time)
-    course = (float(run.drive["heading"][step]), float(state[HEADING]))
+    course = (float(run.drive["heading"][_step(run, contact.at_time)]), float(state[HEADING]))
     speeds, lengths = (found.speed, found.other_speed), (run.drive.car.length, actor.size.length)
     names = ("tested car", actor.name)
     colours = (INK, COLOURS[actor.kind][1])
-    lights = (run.drive["brake"][step] > PRESSED, _brakes(others, number, contact.at_time))
-    for box, way, ahead, speed, length, colour, is_lit in zip(
-        boxes, ways, course, speeds, lengths, colours, lights, strict=True
+    for box, way, ahead, speed, length, colour in zip(
+        boxes, ways, course, speeds, lengths, colours, strict=True
     ):
         axes.plot(way[:, 0], way[:, 1], color=colour, lw=1.6, alpha=0.35, zorder=6)
         axes.add_patch(Polygon(box, closed=True, fc=colour, ec="white", lw=1.2, zorder=8))
-        if is_lit:
-            _lit(axes, box)
         middle = box.mean(axis=0)
         if abs(speed) > LEAST_MOVED:
             along = math.copysign(1.0, speed) * np.array([math.cos(ahead), math.sin(ahead)])
