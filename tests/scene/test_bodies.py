@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from roadgpt.road import Road, World
-from roadgpt.scene import Body, Camera, Pose, Scene
+from roadgpt.scene import Camera, Pose, Scene
 from roadgpt.traffic import SIZES
 
 FOV, HIGH, WIDE = 1.2, 270, 480
@@ -22,7 +22,7 @@ def test_what_changes_in_the_image_is_where_the_box_is(scene: Scene, kind: str) 
     """By hand: a pinhole at the camera's place, looking along x."""
     size, x, y = SIZES[kind], 30.0, -3.0  # type: ignore[index]
     before = scene.render(CAMERA, POSE)
-    after = scene.render(CAMERA, POSE, others=[Body(kind, size, x, y, 0.0, 0.5)])  # type: ignore[arg-type]
+    after = scene.render(CAMERA, POSE, others=[(kind, size, (x, y, 0.0, 0.5))])  # type: ignore[arg-type]
     rows, columns = np.nonzero((before != after).any(axis=2))
     eye = CAMERA.eye(POSE)
     long, wide = size.length / 2 * np.exp(0.5j), size.width / 2 * 1j * np.exp(0.5j)
@@ -37,15 +37,15 @@ def test_what_changes_in_the_image_is_where_the_box_is(scene: Scene, kind: str) 
 
 
 def test_who_is_nearer_hides_who_is_behind(scene: Scene) -> None:
-    truck = Body("truck", SIZES["truck"], 40.0, -2.0, 0.0, 0.0)
-    child = Body("child", SIZES["child"], 60.0, -2.0, 0.0, 0.0)
+    truck = ("truck", SIZES["truck"], (40.0, -2.0, 0.0, 0.0))
+    child = ("child", SIZES["child"], (60.0, -2.0, 0.0, 0.0))
     both, one = (scene.render(CAMERA, POSE, others=each) for each in ([child, truck], [truck]))
     assert np.array_equal(both, one)
     assert not np.array_equal(scene.render(CAMERA, POSE, others=[child]), scene.render(CAMERA, POSE))
 
 
 def test_there_is_room_for_many(scene: Scene) -> None:
-    crowd = [Body("car", SIZES["car"], 20.0 + n, -2.0, 0.0, 0.0) for n in range(70)]
+    crowd = [("car", SIZES["car"], (20.0 + n, -2.0, 0.0, 0.0)) for n in range(70)]
     assert np.array_equal(
         scene.render(CAMERA, POSE, others=crowd), scene.render(CAMERA, POSE, others=crowd[::-1])
     )

@@ -14,7 +14,7 @@ from roadgpt.network import network_of
 from roadgpt.network.surface import NetworkSurface
 from roadgpt.road import Road, World
 from roadgpt.road.land import LONGEST_STEP, Land
-from roadgpt.scene.bodies import MOST_TRIANGLES, Body, mesh_of
+from roadgpt.scene.bodies import Body, mesh_of
 from roadgpt.scene.camera import Camera, Pose, axes_of
 from roadgpt.scene.car import palette_of, saloon
 from roadgpt.scene.light import screen_table
@@ -28,7 +28,6 @@ from roadgpt.scene.trees import Trees, overlay, pictures, plant
 Image = NDArray[np.uint8]
 
 
-MANY = 32  # others, for which there is memory, or a multiple of it
 FARTHEST = 1e7  # m or rad; greatest number in a pose
 
 
@@ -94,13 +93,13 @@ class Scene:
             out = np.empty(shape, np.uint8)
         if out.shape != shape or out.dtype != np.uint8:
             raise UsageError(f"out must be an array of bytes of shape {shape}")
-        buffers = self._buffers(camera, len(others))
         eye = camera.eye(pose)
         numbers = np.concatenate([eye.position, eye.axes.ravel(), [eye.focal]])
-        buffers.depth.fill(0.0)
-        buffers.ids.fill(-1)
         meshes = [self.ground, *([] if car is None else [saloon().placed(car, eye)])]
         meshes += [mesh_of(others)] if others else []
+        buffers = self._buffers(camera, sum(len(mesh.triangles) for mesh in meshes))
+        buffers.depth.fill(0.0)
+        buffers.ids.fill(-1)
         count = 0
         for mesh in meshes:
             count = draw(mesh, numbers, buffers, count)
@@ -111,12 +110,11 @@ class Scene:
         to_screen(buffers.picture, screen_table(), out)
         return out
 
-    def _buffers(self, camera: Camera, others: int) -> RenderBuffers:
-        key = (camera.width, camera.height, math.ceil(others / MANY) * MANY)
-        kept: dict[tuple[int, int, int], RenderBuffers] = self._own.__dict__.setdefault("sheets", {})
-        if key not in kept:
+    def _buffers(self, camera: Camera, count: int) -> RenderBuffers:
+        key = (camera.width, camera.height)
+        kept: dict[tuple[int, int], RenderBuffers] = self._own.__dict__.setdefault("sheets", {})
+        if key not in kept or len(kept[key].kinds) < count:
             high, wide = camera.height, camera.width
-            count = len(self.ground.triangles) + len(saloon().mesh.triangles) + key[2] * MOST_TRIANGLES
             kept[key] = RenderBuffers(
                 np.empty((SAMPLES * high, wide), np.float32),
                 np.empty((SAMPLES * high, wide), np.int32),

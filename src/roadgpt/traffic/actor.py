@@ -111,10 +111,8 @@ class Tracks:
 
 def bodies(actors: Sequence[Actor], states: FloatArray) -> "list[Body]":
     """Returns the bodies of actors, for images, from their states, shape (actors, 5)."""
-    from roadgpt.scene import Body  # only images need it
-
     found = zip(actors, states.tolist(), strict=True)
-    return [Body(each.kind, each.size, *state[:SPEED]) for each, state in found if not math.isnan(state[X])]
+    return [(each.kind, each.size, state[:SPEED]) for each, state in found if not math.isnan(state[X])]
 
 
 def rounded(states: FloatArray) -> FloatArray:
