@@ -14,11 +14,13 @@ from roadgpt.drive.drive import COLUMNS, Box, FloatArray
 from roadgpt.drive.view import LightAhead, Other, Others
 from roadgpt.network.lanes import HEADROOM
 from roadgpt.traffic import STEP, Actor, TestedCar, Traffic
+from roadgpt.traffic.actor import bodies
 from roadgpt.traffic.boxes import touch
 
 if TYPE_CHECKING:
     from roadgpt.drive.drive_monitor import DriveMonitor
     from roadgpt.road import Road, World
+    from roadgpt.scene import Body
 
 SEEN = 200.0  # m, between the middles of the car and of another
 _PLACES = [[*COLUMNS].index(name) for name in ("x", "y", "z", "heading", "speed", "s", "t")]
@@ -103,6 +105,10 @@ class Company:
     def _reach(self, actor: Actor) -> float:
         """Returns from how many metres between their middles the driver sees an actor."""
         return min(SEEN, visual_range(self._scene, actor.kind) + actor.size.length / 2)
+
+    def bodies(self, time: float) -> "list[Body]":
+        """Returns the bodies of the others at this time, for images."""
+        return bodies(self._traffic.actors, self._traffic.at(time))
 
     def lights(self, s: float, time: float) -> tuple[LightAhead, ...]:
         """Returns the lights ahead of station ``s`` of the route, and what they show at this time."""

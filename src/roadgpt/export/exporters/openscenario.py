@@ -54,7 +54,7 @@ BODIES = {
     "lost_load": ("MiscObject", "obstacle", 20),
 }
 """Body, category and a typical mass in kg, riders included, of each kind of actor."""
-NEAR, LASTS = 0.1, 0.5  # m and s; who stays within this distance for this time creeps or rests
+NEAR, LASTS = 0.1, 0.1  # m and s; who stays within this distance for this time creeps or rests
 EVENLY = 0.01  # m, from where it would be if it moved evenly meanwhile
 REAR, FRONT = -0.3, 0.3  # usual places of axles as shares of a vehicle's length, from its middle
 
@@ -261,9 +261,9 @@ def _slow_parts(time: Array, places: Array) -> list[tuple[int, int]]:
     while first < len(time) - 1:
         is_far = np.linalg.norm(places[first:] - places[first], axis=1) > NEAR
         last = first + int(np.argmax(is_far) if is_far.any() else len(is_far)) - 1
-        if time[last] - time[first] >= LASTS:
+        if time[last] - time[first] > LASTS - 1e-6:
             last = first + bisect_left(range(first + 1, last + 1), True, key=is_uneven)
-        if time[last] - time[first] >= LASTS:
+        if time[last] - time[first] > LASTS - 1e-6:
             found.append((first, last))
         first = last if found and found[-1] == (first, last) else first + 1
     return found

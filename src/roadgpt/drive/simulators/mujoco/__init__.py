@@ -75,7 +75,10 @@ class MujocoSimulator:
                 break
             now = vehicle.row.tolist()
             *place, steer, vx, vy = _SEEN(now)
-            image = None if sensor is None else sensor.see(vehicle.see())
+            image = None
+            if sensor is not None:
+                bodies = () if company is None else company.bodies(step * CONTROL)
+                image = sensor.see(vehicle.see(), bodies)
             ahead = outlook.at(now[station])
             if company is not None:
                 lights = company.lights(now[station], step * CONTROL)
