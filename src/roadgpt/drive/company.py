@@ -63,6 +63,8 @@ class Company:
         passages = road.passages if traffic.lights is not None else ()
         lines = [(each.light_line, each.arrival) for each in passages]
         self._lines = [(line, end) for line, end in lines if line is not None]
+        self.has_lights = bool(self._lines)
+        """Whether traffic lights that run are on the way."""
         self._samples = 0
         self._looks: list[tuple[str, float, float]] = []
         self._sizes, self._order, self._seen = np.empty((0, 2)), np.empty(0, np.int64), np.empty((0, 4))

@@ -101,4 +101,6 @@ class MujocoSimulator:
         table = np.frombuffer(b"".join(rows)).reshape(len(rows), -1)
         columns = Columns({name: table[:, place] for place, name in enumerate(_NAMES)})
         others = None if traffic is None else traffic.tracks()
-        return Drive(guard.name, "mujoco", seed, columns, ended, self.car.box, tuple(guard.handovers), others)
+        has_lights = company is not None and company.has_lights
+        handovers = tuple(guard.handovers)
+        return Drive(guard.name, "mujoco", seed, columns, ended, self.car.box, handovers, others, has_lights)
