@@ -21,7 +21,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.network import legs_of, network_of, only_road
+from roadgpt.drive.outlook import limits_of
+from roadgpt.network import only_road
 from roadgpt.verdict.contact import contacts_of
 from roadgpt.verdict.measures import measure
 from roadgpt.verdict.oracle import is_outside
@@ -75,11 +76,8 @@ def incidents_among_others(road: "Road", drive: "Drive", world: "World") -> tupl
 
 def limits_along(road: "Road", drive: "Drive", world: "World") -> NDArray[np.float64]:
     """Returns the speed limit in m/s of the lane that the tested car is to follow, at every step."""
-    network, legs = network_of(road, world), legs_of(road, world)
-    lanes = (network.road(leg.road).profile.lanes[leg.lane] for leg in legs)
-    limits = [lane.speed_limit or world.limits.speed_limit for lane in lanes]
-    starts = road.starts[1 : len(legs)]
-    return np.asarray(np.array(limits)[np.searchsorted(starts, drive["s"], "right")])
+    starts, limits = zip(*(limits_of(road, world) or [(0.0, world.limits.speed_limit)]), strict=True)
+    return np.asarray(np.array(limits)[np.searchsorted(starts[1:], drive["s"], "right")])
 
 
 def _at(drive: "Drive", kind: IncidentKind, time: float, other: str | None = None) -> Incident:

@@ -90,7 +90,7 @@ class MujocoSimulator:
             if company is not None:
                 lights = company.lights(now[station], step * CONTROL)
             here = (step * CONTROL, *place, road, world, steer, CONTROL, vx, vy, image)
-            view = View._make((*here, *ahead, seen, lights))
+            view = View._make((*here, *ahead, seen, lights, outlook.signs(now[station])))
             steer, throttle, brake = guard.ask(view)
             if monitor.touched is not None:
                 throttle, brake = 0.0, 1.0  # whatever the driver says
