@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from roadgpt.brief.scene import VEHICLES
 from roadgpt.brief.visibility import visual_range
-from roadgpt.compiled import compiled
+from roadgpt.compiled import compiled, inlined
 from roadgpt.drive.drive import COLUMNS, Box, FloatArray
 from roadgpt.drive.view import LightAhead, Other, Others
 from roadgpt.network.lanes import HEADROOM
@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from roadgpt.scene import Body
 
 SEEN = 200.0  # m, between the middles of the car and of another
+EYE = 1.2  # m, height of the driver's eye, which looks from the middle of the car
+SPACING = 5.0  # m between the places at which the height of the road is known
+BESIDE = 6.0  # m, within which the road lies under a line of sight
+FLAT = 0.002  # m, from the middle of three such places to the line between the others, twice: hides nobody
 _PLACES = [[*COLUMNS].index(name) for name in ("x", "y", "z", "heading", "speed", "s", "t")]
 
 
@@ -61,6 +65,84 @@ def look_around(
     return count, touches
 
 
+@inlined
+def _hides(
+    states: FloatArray, sizes: FloatArray, m: int, eye: FloatArray, x: float, y: float, z: float
+) -> bool:
+    """Returns whether box ``m`` lies between the eye and a point."""
+    c, s = math.cos(states[m, 3]), math.sin(states[m, 3])
+    dx, dy, there_x, there_y = eye[0] - states[m, 0], eye[1] - states[m, 1], x - eye[0], y - eye[1]
+    low, high = 0.0, 1.0
+    for axis in range(2):
+        here = dx * c + dy * s if axis == 0 else dy * c - dx * s
+        slope = there_x * c + there_y * s if axis == 0 else there_y * c - there_x * s
+        room = sizes[m, axis] / 2.0
+        if abs(slope) < 1e-9:
+            if abs(here) > room:
+                return False
+        else:
+            one, two = (-room - here) / slope, (room - here) / slope
+            low, high = max(low, min(one, two)), min(high, max(one, two))
+    one, two = eye[2] + low * (z - eye[2]), eye[2] + high * (z - eye[2])
+    return low < high and min(one, two) < states[m, 2] + sizes[m, 2] and max(one, two) > states[m, 2]
+
+
+@compiled
+def in_sight(
+    states: FloatArray, sizes: FloatArray, eye: FloatArray, road: FloatArray, order: "NDArray[np.int64]",
+    seen: FloatArray, count: int, reach: float,
+) -> int:  # fmt: skip
+    """Keeps in ``order`` and ``seen``, as ``look_around`` wrote them, those whom the driver's eye at x, y, z
+    sees within ``reach`` metres, and returns how many they are.
+
+    Somebody is seen if a line from the eye leads to the top of its box, at its middle or a corner, past all
+    other boxes and, for the middle, above the points (n, 3) of the road. ``sizes`` (n, 3) are lengths, widths
+    and heights."""
+    near, before, kept = order[:count].copy(), np.empty(count, np.int64), 0
+    ways = np.empty((count, 4))  # distance, bearing and radius of a box, and half of the angle that it covers
+    for place in range(count):
+        k = near[place]
+        x, y = states[k, 0] - eye[0], states[k, 1] - eye[1]
+        far, radius = math.hypot(x, y), math.hypot(sizes[k, 0], sizes[k, 1]) / 2.0
+        wide = math.asin(radius / far) if far > radius else math.pi
+        ways[place, 0], ways[place, 1], ways[place, 2], ways[place, 3] = far, math.atan2(y, x), radius, wide
+    for place in range(count):
+        k, far = near[place], ways[place, 0]
+        ahead, aside, top = states[k, 0] - eye[0], states[k, 1] - eye[1], states[k, 2] + sizes[k, 2]
+        is_hidden = far > reach
+        for n in range(len(road)):
+            x, y = road[n, 0] - eye[0], road[n, 1] - eye[1]
+            u = (x * ahead + y * aside) / max(far * far, 1e-9)
+            if 0.0 < u < 1.0 and abs(y * ahead - x * aside) < BESIDE * far:
+                is_hidden = is_hidden or road[n, 2] > eye[2] + u * (top - eye[2])
+        if is_hidden:
+            continue
+        some = 0
+        for n in range(count):
+            apart, least = abs(ways[n, 1] - ways[place, 1]), ways[n, 3] + ways[place, 3]
+            is_nearer = n != place and ways[n, 0] - ways[n, 2] < far + ways[place, 2]
+            if is_nearer and min(apart, 2.0 * math.pi - apart) < least:
+                before[some] = near[n]
+                some += 1
+        c, s, is_seen = math.cos(states[k, 3]), math.sin(states[k, 3]), False
+        for point in range(5):
+            if is_seen:
+                break
+            along = (0.0, 1.0, 1.0, -1.0, -1.0)[point] * sizes[k, 0] / 2.0
+            across = (0.0, 1.0, -1.0, 1.0, -1.0)[point] * sizes[k, 1] / 2.0
+            x, y = states[k, 0] + along * c - across * s, states[k, 1] + along * s + across * c
+            is_seen = True
+            for n in range(some):
+                if _hides(states, sizes, before[n], eye, x, y, top):
+                    is_seen = False
+                    break
+        if is_seen:
+            order[kept] = k
+            seen[kept] = seen[place]
+            kept += 1
+    return kept
+
+
 class Company:
     """The others on the road during one drive."""
 
@@ -71,9 +153,15 @@ class Company:
         passages = road.passages if traffic.lights is not None else ()
         lines = [(each.light_line, each.arrival) for each in passages]
         self._lines = [(line, end) for line, end in lines if line is not None]
+        self.has_lights = bool(self._lines)
+        """Whether traffic lights that run are on the way."""
         self._scene, self._samples = world.scene, 0
         self._looks: list[tuple[float, ...]] = []
-        self._table, self._order, self._seen = np.empty((0, 4)), np.empty(0, np.int64), np.empty((0, 7))
+        self._table, self._sizes = np.empty((0, 4)), np.empty((0, 3))
+        self._order, self._seen = np.empty(0, np.int64), np.empty((0, 7))
+        line = road.at(np.arange(0.0, road.length, SPACING))
+        is_hilly = np.abs(np.diff(line[:, 2], 2)).max(initial=0.0) > FLAT
+        self._heights = line if is_hilly else line[:0]
 
     def seen(self, row: FloatArray, time: float) -> Others:
         """Moves the others on to this time, tells the monitor whether the car touches one, and returns those
@@ -89,6 +177,7 @@ class Company:
             if new:
                 self._looks += [(*each.size[:2], each.kind in VEHICLES, self._reach(each)) for each in new]
                 self._table = np.array(self._looks, float)
+                self._sizes = np.vstack([self._sizes, *(each.size for each in new)])
                 count = len(self._looks)
                 self._order, self._seen = np.empty(count, np.int64), np.empty((count, 7))
         states, actors = self._traffic.at(time), self._traffic.actors
@@ -96,6 +185,9 @@ class Company:
         count, touches = look_around(states, self._table, car, self._order, self._seen)
         if touches:
             self._monitor.touch(time)
+        eye, here = np.array([x, y, z - box.height + EYE]), int(s / SPACING)
+        road = self._heights[max(here - int(SEEN / SPACING), 0) : here + int(SEEN / SPACING)]
+        count = in_sight(states, self._sizes, eye, road, self._order, self._seen, count, SEEN)
         boxes = self._seen[:count].copy()
         kinds = [actors[k].kind for k in self._order[:count].tolist()]
         others = Others(map(Other._make, zip(kinds, *boxes.T[:6].tolist(), strict=True)))
