@@ -1,5 +1,6 @@
 """OpenSCENARIO: ASAM's checker finds nothing, and the car is told where the road says."""
 
+import math
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
@@ -152,3 +153,39 @@ def test_a_player_that_merges_close_poses_still_drives_off_in_time(tmp_path: Pat
     played = np.interp(time, known, places[:, 0])
     played[time < begins] = x[0] + REAR_AXLE
     assert np.abs(played - (x + REAR_AXLE)).max() < 0.02
+
+
+CONDITIONS = {
+    "": {"RoadCondition"},
+    "medium; wet": {"RoadCondition"},
+    "fog 60": {"RoadCondition", "Weather", "Fog"},
+    "rain 5": {"RoadCondition", "Weather", "Precipitation"},
+    "night": {"RoadCondition", "TimeOfDay", "Weather", "Sun"},
+    "low_sun": {"RoadCondition", "Weather", "Sun"},
+    "fog 60; rain 5; night": {"RoadCondition", "TimeOfDay", "Weather", "Sun", "Fog", "Precipitation"},
+}
+
+
+@pytest.mark.parametrize("text", CONDITIONS)
+def test_the_environment_is_that_of_the_scene_and_asams_checker_agrees(tmp_path: Path, text: str) -> None:
+    road = ROADS["arcs"]
+    world = WORLD.changed(scene=text)
+    save(road, tmp_path, ["openscenario"], world, "weather", drive(road, world))
+    for file in (tmp_path / "weather.xosc", tmp_path / "weather.drive.xosc"):
+        assert asam_says(file)[0] == []
+        root = ET.parse(file).getroot()
+        (environment,) = root.iter("Environment")
+        assert {each.tag for each in environment.iter()} == {"Environment", *CONDITIONS[text]}
+        values = {each.tag: each.attrib for each in environment.iter()}
+        assert float(values["RoadCondition"]["frictionScaleFactor"]) == world.site.friction
+        assert "Fog" not in values or values["Fog"] == {"visualRange": "60"}
+        rain = {"precipitationType": "rain", "precipitationIntensity": "5"}
+        assert "Precipitation" not in values or values["Precipitation"] == rain
+        if "Sun" in values:
+            azimuth, up = (float(values["Sun"][name]) for name in ("azimuth", "elevation"))
+            assert ("TimeOfDay" in values) == ("night" in text) == (up < math.radians(-18))  # astronomical
+            assert text != "low_sun" or 0 < up < math.radians(15)
+    if text == "low_sun":  # ASAM: 0 is north, pi/2 east
+        heading = float(next(root.iter("WorldPosition")).attrib["h"])
+        ahead = math.cos(heading), math.sin(heading)
+        assert (math.sin(azimuth), math.cos(azimuth)) == pytest.approx(ahead, abs=0.03)

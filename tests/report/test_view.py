@@ -1,6 +1,7 @@
 """The page of a road: what stands in it, and that nothing in a description gets out of its place."""
 
 import json
+import math
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -256,3 +257,18 @@ def test_the_page_is_named_after_its_roads(folder: Path, monkeypatch: pytest.Mon
     done = CliRunner().invoke(app, ["view", "road.json", "campaign/runs/0001"])
     assert (done.exit_code, done.stdout) == (0, "road-and-0001-view.html\n")
     assert len(data_of((folder / "road-and-0001-view.html").read_text(encoding="utf-8"))) == 2
+
+
+def test_only_a_scene_with_weather_puts_it_on_the_page(driven: Run) -> None:
+    def shown(text: str) -> dict[str, object]:
+        world = driven.world.changed(scene=text)
+        return view.scene(replace(driven, request=driven.request.model_copy(update={"world": world})))
+
+    plain = shown("")
+    assert "weather" not in plain
+    for text in ("medium", "wet", "ego v=50"):
+        assert shown(text) == plain
+    foggy = shown("fog 50")
+    assert foggy.pop("weather")["extinction"] == pytest.approx(math.log(20) / 50)
+    assert foggy.pop("about") == plain["about"] + "; fog with a visual range of 50 metres"
+    assert foggy == {name: value for name, value in plain.items() if name != "about"}

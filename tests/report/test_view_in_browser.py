@@ -415,3 +415,32 @@ def test_the_others_stand_and_move_where_the_drive_has_them(tab: BrowserTab, tmp
         assert (x, y) == pytest.approx(expected[int(number), :2], abs=0.01)
         assert math.cos(heading - expected[int(number), 3]) > 0.9999
     assert not tab.told
+
+
+def test_weather_is_seen_on_the_page_and_fades_with_distance(tab: BrowserTab, tmp_path: Path) -> None:
+    tab.size(1200, 800)
+    seen = {}
+    for text in ("medium", "fog 40", "rain 30", "night", "low_sun"):
+        run = prove(design(), 7, World().changed(scene=text), Setup(drives=False))
+        path = view.write([replace(run, source="a road")], tmp_path / "weather.html")
+        tab.open(path)
+        tab.run("roadgpt.player.moveTo(0.5); roadgpt.player.choose('bonnet')")
+        seen[text] = tab.picture(".stage .scene")[..., :3]
+        assert_quiet(tab, path)
+        assert ("visual range of 40" in tab.run("document.querySelector('.origin').textContent")) == (
+            text == "fog 40"
+        )
+    rows, columns, _ = seen["medium"].shape
+    sky = {
+        text: picture[rows // 8 : rows // 5, columns // 2 : 9 * columns // 10]
+        for text, picture in seen.items()
+    }
+    road = {text: picture[-rows // 6 :].mean() for text, picture in seen.items()}
+    for text in ("fog 40", "rain 30"):
+        assert np.ptp(sky[text].mean(axis=(0, 1))) < 0.02 < np.ptp(sky["medium"].mean(axis=(0, 1)))  # grey
+    assert sky["fog 40"].std() < 0.01
+    assert changed(seen["fog 40"], seen["medium"]) > 0.8
+    assert sky["night"].mean() < 0.3 * sky["medium"].mean()
+    assert seen["night"][-rows // 5 :].max() > 3 * sky["night"].mean()  # headlights
+    assert road["rain 30"] < 0.9 * road["medium"]
+    assert seen["low_sun"].max(axis=2)[: rows // 2].mean() > seen["medium"].max(axis=2)[: rows // 2].mean()

@@ -49,6 +49,7 @@ from roadgpt.brief.scene import (
     Flow,
     Light,
     Mark,
+    Patch,
     Role,
     Scene,
     Surface,
@@ -253,7 +254,9 @@ AN_ACTION = _Language(
     {number.key: field for field, number in NUMBERS.items() if field in Action.model_fields},
     of="manoeuvre",
 )
-ITSELF = _Language({}, {"v": "speed"}, of=TESTED_CAR)
+ITSELF = _Language(_words(turn=Way), {"v": "speed"}, of=TESTED_CAR)
+SLIPPERY = "slippery"
+A_PATCH = _Language({}, {NUMBERS[field].key: field for field in Patch.model_fields}, of="slippery place")
 CONDITIONS = _words(flow=Flow, light=Light, surface=Surface)
 MARK = re.compile(
     r"\b(?:(?:after|before|in) (?:turn|junction) (?:-1|[1-9]\d?)|(?:after|with) "
@@ -525,7 +528,7 @@ def _made(model: type[Model], fields: dict[str, object], text: str) -> Model:
 
 def scene_plan(scene: Scene) -> str:
     """Returns a scene as it stands in a plan, such as "truck ahead gap=30: brake; medium"; "" for none."""
-    line = [" ".join([TESTED_CAR, *_written(scene, ITSELF)])] if scene.speed else []
+    line = [" ".join([TESTED_CAR, *_written(scene, ITSELF)])] if scene.speed or scene.turn else []
     for role in scene.actors:
         actor = _marked([role.kind, *_times(role.count)], role, AN_ACTOR)
         actions = ", ".join(_marked([action.what], action, AN_ACTION) for action in role.actions)
@@ -533,7 +536,8 @@ def scene_plan(scene: Scene) -> str:
     line += [scene.flow or "", f"oncoming {scene.oncoming}" if scene.oncoming else ""]
     line += [f"parked {side}" for side in scene.parked]
     line += [f"{name} {amount_text(number)}" for name in WEATHER if (number := getattr(scene, name))]
-    return "; ".join(filter(None, [*line, scene.light, scene.surface]))
+    patches = [" ".join([SLIPPERY, *_written(patch, A_PATCH)]) for patch in scene.slippery]
+    return "; ".join(filter(None, [*line, scene.light, scene.surface, *patches]))
 
 
 def _marked(head: list[str], thing: Role | Action, language: _Language) -> str:
@@ -545,7 +549,7 @@ def read_scene(text: str) -> Scene:
     part of the language, or the scene contradicts itself.
     """
     fields: dict[str, object] = {}
-    actors, rows = [], set[str]()
+    actors, patches, rows = [], [], set[str]()
     for part in filter(None, map(str.strip, text.split(";"))):
         first, *words = part.replace(":", " : ").split()
         if first == "parked":
@@ -562,16 +566,21 @@ def read_scene(text: str) -> Scene:
         elif first == TESTED_CAR:
             for word in words:
                 _read_word(fields, word, ITSELF)
+        elif first == SLIPPERY:
+            patch: dict[str, object] = {}
+            for word in words:
+                _read_word(patch, word, A_PATCH)
+            patches.append(_made(Patch, patch, part))
         elif first in WEATHER and len(words) < 2:
             _set(fields, first, read_amount(words[0]) if words else WEATHER[first])
         elif first in CONDITIONS and not words:
             _set(fields, *CONDITIONS[first])
         else:
-            known = (*get_args(ActorKind), TESTED_CAR, "oncoming", "parked", *WEATHER, *CONDITIONS)
+            known = (*get_args(ActorKind), TESTED_CAR, "oncoming", "parked", SLIPPERY, *WEATHER, *CONDITIONS)
             raise BriefError(
                 f"a scene has no '{part[:40]}'; its parts, divided by ;, begin with one of {', '.join(known)}"
             )
-    return _made(Scene, {**fields, "actors": tuple(actors), "parked": rows}, text)
+    return _made(Scene, {**fields, "actors": tuple(actors), "parked": rows, "slippery": tuple(patches)}, text)
 
 
 def _read_role(text: str) -> Role:

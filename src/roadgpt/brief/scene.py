@@ -36,6 +36,8 @@ ANYTHING: tuple[ActorKind, ...] = get_args(ActorKind)
 SEVERAL = {"bus": "buses", "child": "children", "cones": "cones"}
 """The plurals that are not made with an s."""
 ALONG = ("ahead", "behind", "lane", "far", "oncoming")
+LEAVES = ("cut_out", "change_lane")
+LANES_AWAY = {"lane": 1, "far": 2}
 ACROSS = ("crossing", "crosswalk", "junction", "beside")
 ANYWHERE = get_args(Where)
 
@@ -91,6 +93,7 @@ NUMBERS: Mapping[str, Number] = {
     "duration": Number("for", 0.1, 600, "for {} seconds"),
     "gap": Number("gap", -200, 1000, "at a gap of {} metres", (*ALONG, "parked", "beside")),
     "headway": Number("thw", 0, 20, "at a headway of {} seconds", ("ahead", "behind")),
+    "lead": Number("lead", -200, 1000, "with its middle {} metres ahead of the tested car's", ALONG),
     "station": Number("s", 0, 40_000, "at {} metres from the start"),
     "time": Number("time", 0, 3600, "after {} seconds"),
     "distance": Number("dist", 0, 40_000, "after {} metres"),
@@ -98,16 +101,23 @@ NUMBERS: Mapping[str, Number] = {
     "speed": Number("v", 0, 250, "at {} km/h"),
     "faster": Number("dv", -250, 250, "at {} km/h more than the tested car", (*ALONG, "ramp")),
     "overlap": Number("overlap", 0, 100, "covering {} percent of the tested car's width", ALONG),
-    "impact": Number("impact", 0, 100, "aimed at {} percent of the tested car's width", (*ALONG, *ACROSS)),
+    "impact": Number("impact", -200, 300, "aimed at {} percent of the tested car's width", (*ALONG, *ACROSS)),
     "offset": Number("t", -10, 10, "{} metres left of the lane's middle", (*ALONG, "ramp", "roundabout")),
     "away": Number("away", 0, 60, "{} metres from the tested car's path", ACROSS),
     "fog": Number("fog", 5, 1000, "fog with a visual range of {} metres"),
     "rain": Number("rain", 0.1, 200, "rain of {} mm/h"),
+    "friction": Number("mu", 0.05, 2, "with a friction of {}"),
+    "length": Number("len", 1, 1000, "on {} metres"),
 }
 CUES = ("time", "distance", "ttc", "headway", "gap", "station", "at")
 """The conditions on which an action begins. Time and distance are those of the tested car since its start;
 the station is that of whoever acts, along the lane of the tested car."""
-ONE_OF = (("gap", "headway", "station", "at"), ("speed", "faster"), ("overlap", "impact", "offset"), CUES)
+ONE_OF = (
+    ("gap", "headway", "lead", "station", "at"),
+    ("speed", "faster"),
+    ("overlap", "impact", "offset"),
+    CUES,
+)
 
 
 class Doing(NamedTuple):
@@ -216,6 +226,8 @@ class Role(Frozen):
     gap: Amount | None = None
     """The distance along the lanes, bumper to bumper."""
     headway: Amount | None = None
+    lead: Amount | None = None
+    """The distance along the lanes from the middle of the tested car to its middle."""
     station: Amount | None = None
     speed: Amount | None = None
     faster: Amount | None = None
@@ -223,7 +235,7 @@ class Role(Frozen):
     """The share of the tested car's width that its box covers, seen along the lane."""
     impact: Amount | None = None
     """Where on the tested car's width its middle arrives if nobody reacts, counted from the side that it
-    comes from, or else from the kerb."""
+    comes from, or else from the kerb. Beyond 0 to 100, one touches the side of the other, or passes."""
     offset: Amount | None = None
     away: Amount | None = None
     at: Mark | None = None
@@ -268,11 +280,29 @@ class Role(Frozen):
         return f"{said}, {who} {', then '.join(map(str, self.actions))}" if self.actions else said
 
 
+class Patch(Frozen):
+    """A stretch of the tested car's road with a friction of its own."""
+
+    friction: Amount = exactly(0.3)
+    station: Amount
+    length: Amount = exactly(10)
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        _given(self, "slippery")
+        return self
+
+    def __str__(self) -> str:
+        return " ".join(["a slippery place", *_said(self)])
+
+
 class Scene(Frozen):
     """The others on the road and the conditions of a drive."""
 
     speed: Amount | None = None
     """The speed of the tested car at its start in km/h."""
+    turn: Literal["left", "right", "straight"] | None = None
+    """The way that the tested car takes at the first junction; None: that of the route."""
     actors: tuple[Role, ...] = ()
     flow: Flow | None = None
     """How many vehicles drive in the lanes of the map: 5, 12 or 25 for each km and lane; None: nobody."""
@@ -287,6 +317,7 @@ class Scene(Frozen):
     light: Light | None = None
     """Night, or a sun that is low ahead of the tested car at its start; None: day."""
     surface: Surface | None = None
+    slippery: tuple[Patch, ...] = ()
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
@@ -307,6 +338,19 @@ class Scene(Frozen):
     def has_others(self) -> bool:
         """Whether somebody or something else is on the road."""
         return self.has_flow or bool(self.actors or self.parked)
+
+    @property
+    def lanes_beside(self) -> dict[str, int]:
+        """How many lanes of its direction it needs to the left and to the right of the tested car's."""
+        found = {"left": 0, "right": 0}
+        for role in self.actors:
+            leave = [each for each in role.actions if each.what in LEAVES]
+            needs = [(LANES_AWAY.get(role.where, 0), role.side)]
+            needs += [(1, each.side) for each in leave if role.where in ("ahead", "behind")]
+            for count, side in needs:
+                side = "right" if side == "right" else "left"
+                found[side] = max(found[side], count)
+        return found
 
     @property
     def surfaces(self) -> tuple[Surface, ...]:
@@ -352,6 +396,8 @@ def scene_text(scene: Scene) -> str:
 def _parts(scene: Scene) -> Iterator[str]:
     if scene.speed:
         yield f"the tested car starts at {scene.speed} km/h"
+    if scene.turn:
+        yield f"it goes {scene.turn} at the junction"
     yield from map(str, scene.actors)
     for flow, name in ((scene.flow, "traffic"), (scene.oncoming, "oncoming traffic")):
         if flow:
@@ -364,13 +410,10 @@ def _parts(scene: Scene) -> Iterator[str]:
         yield LIGHTS[scene.light]
     if scene.surface:
         yield SURFACES[scene.surface].said
+    yield from map(str, scene.slippery)
 
 
-UNBUILT = {
-    "fog": "fog",
-    "rain": "rain",
-    "light": "night and a low sun",
-}
+UNBUILT: dict[str, str] = {}
 """The parts of a scene that are read and told, but that no drive has yet."""
 
 

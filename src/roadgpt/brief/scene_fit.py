@@ -1,13 +1,209 @@
-"""Refuses a scene that needs what the road of a Brief is said not to have."""
+"""Asks of the road of a Brief what a scene needs, or refuses it if the Brief excludes that.
+
+The tested car rolls at its speed for 4 s, then comes what happens, and then it can stop with 4 m/s2. Until
+that happens, it needs no more than 6 m/s2 sideways."""
 
 from collections.abc import Iterator
-from math import inf
+from math import ceil, inf, pi
 
-from roadgpt.brief.junctions import LANE_KINDS, RAMPS
-from roadgpt.brief.model import Brief, span
+from roadgpt.brief.amount import Amount, at_least
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
+from roadgpt.brief.model import Brief, Clause, span
 from roadgpt.brief.outline import outline
-from roadgpt.brief.scene import FLOWS, Scene
+from roadgpt.brief.ranges import Range
+from roadgpt.brief.scene import FLOWS, LEAVES, Action, Role, Scene
 from roadgpt.errors import BriefError
+
+ROLLS = 4.0  # s at speed before anything happens
+STOPS, ASIDE = 4.0, 6.0  # m/s2: with which the tested car can stop, and that it can use sideways
+SPARE = 10.0  # m, for where the tested car starts, and for its length
+JUNCTION = 20.0  # m, across one
+LANE = 3.5  # m from lane to lane
+KMH = 3.6
+
+
+def fitted(brief: Brief, scene: Scene, limit: float) -> Brief:
+    """Returns the Brief together with what a scene needs of its road and the Brief leaves open; ``limit`` is
+    the speed limit in m/s. Raises BriefError if the Brief excludes it."""
+    check_scene(scene, brief)
+    if brief.map is not None or not (scene.actors or scene.speed or scene.slippery or scene.turn):
+        return brief
+    speed = (max(scene.speed.lo or 0.0, scene.speed.hi or 0.0) / KMH) if scene.speed else limit
+    before, stop = _until_stop(scene, speed), speed**2 / 2 / STOPS
+    if not brief.stretches:
+        return _long_enough(_wide_enough(_drivable(brief, before, speed), scene), before + stop, speed)
+    places = [place for place in brief.junctions if place.kind not in (*LANE_KINDS, *RAMPS)]
+    at_junction = bool(scene.turn) or any(role.where in ("junction", "roundabout") for role in scene.actors)
+    first, *others = brief.stretches
+    junctions = list(brief.junctions)
+    if at_junction and places:
+        before = ROLLS * speed + SPARE
+        junctions[junctions.index(places[0])] = _with_way(places[0], scene)
+    else:  # what is longer than the first road happens on those straight behind it
+        before += stop
+        left = before - _length(first).hi
+        for n, (place, road) in enumerate(zip(brief.junctions, others, strict=True)):
+            if left > 0 and place.take is None and place in places:
+                junctions[n] = place.model_copy(update={"take": "straight"})
+            is_straight = junctions[n].take in ("straight", "main") and place.kind != "roundabout"
+            if not (is_straight or place.kind in LANE_KINDS):
+                break
+            left -= _length(road).hi + JUNCTION
+            before -= min(_length(road).hi + JUNCTION, before)
+    first = _long_enough(_wide_enough(_drivable(first, before - stop, speed), scene), before, speed)
+    return brief.model_copy(update={"stretches": (first, *others), "junctions": tuple(junctions)})
+
+
+def needs(asked: Brief, found: Brief) -> str:
+    """Returns a sentence on what ``fitted`` added to a Brief; empty if that is nothing."""
+    pairs = zip(asked.stretches or (asked,), found.stretches or (found,), strict=True)
+    said: list[str] = []
+    for before, road in pairs:
+        said += (
+            [f"{road.lanes.lo:g} lanes in its direction"] if road.lanes and road.lanes != before.lanes else []
+        )
+        said += [f"a road of {road.length} metres"] if road.length and road.length != before.length else []
+        if road.radius != before.radius or [c.radius for c in road.clauses] != [
+            c.radius for c in before.clauses
+        ]:
+            said.append("wide bends")
+        if road.clauses[:1] != before.clauses[:1] and road.clauses[0].kind == "straight":
+            said.append(f"a first straight of {road.clauses[0].length} metres")
+    for old, new in zip(asked.junctions, found.junctions, strict=True):
+        said += [f"to go {new.take} at the junction"] * (new.take != old.take)
+        said += ["traffic lights"] * (new.control != old.control)
+    return f"the scene needs {', '.join(said)}; the road gets that" if said else ""
+
+
+def _until_stop(scene: Scene, speed: float) -> float:
+    """Returns how far the tested car comes until everything has happened, in metres."""
+    seconds = max([ROLLS, *(_lasts(role, speed) for role in scene.actors)])
+    marks = [(*role_marks(role),) for role in scene.actors]
+    far = max(
+        [0.0, *(each for some in marks for each in some), *(_most(each.station) for each in scene.slippery)]
+    )
+    return max(seconds * speed, far) + SPARE
+
+
+def role_marks(role: Role) -> Iterator[float]:
+    """Yields how far along the road somebody is named to be."""
+    yield from (_most(each.station) for each in (role, *role.actions))
+    if role.where == "oncoming":
+        yield _most(role.gap)
+
+
+def _most(amount: Amount | None) -> float:
+    return 0.0 if amount is None else amount.hi or amount.lo or 0.0
+
+
+def _lasts(role: Role, speed: float) -> float:
+    """Returns after how many seconds what somebody does has happened."""
+    own = _most(role.speed) / KMH if role.speed else max(speed + _most(role.faster) / KMH, 0.0)
+    own = own if role.kind not in ("cones", "barrier", "lost_load") else 0.0
+    closing = speed + own if role.where == "oncoming" else speed - own
+    gap = _most(role.gap) or _most(role.lead) or _most(role.headway) * speed
+    meets = gap / closing if closing > 1.0 and role.where in ("ahead", "lane", "far", "oncoming") else 0.0
+    lasts, now = max((_most(each.time) for each in role.actions), default=0.0) or ROLLS, own
+    for action in role.actions:
+        seconds, now = _takes(action, now)
+        lasts += seconds
+    return max(meets, lasts)
+
+
+def _takes(action: Action, speed: float) -> tuple[float, float]:
+    """Returns how long an action lasts in seconds, and the speed at its end."""
+    if action.what in ("brake", "stop", "speed"):
+        to = _most(action.to) / KMH
+        rate = _most(action.decel) or abs(_most(action.accel)) or 3.0
+        return _most(action.duration) or abs(to - speed) / rate, to
+    if action.what in ("drift", "cut_in", "cut_out", "change_lane"):
+        return _most(action.duration) or pi / 2 * (_most(action.shift) or LANE) / (
+            _most(action.lateral) or 1.0
+        ), speed
+    return _most(action.duration), speed
+
+
+def _with_way(place: JunctionClause, scene: Scene) -> JunctionClause:
+    lights = any(each.what == "run_light" for role in scene.actors for each in role.actions)
+    if scene.turn and place.take and not place.take.endswith(scene.turn):
+        raise BriefError(
+            f"the tested car goes {scene.turn} at the junction, and the words say {place.take}; change one of"
+            " them"
+        )
+    if lights and place.control not in (None, "lights"):
+        raise BriefError(
+            f"who runs a red light needs lights, and the junction has {place.control}; write lights"
+        )
+    return place.model_copy(
+        update={"take": place.take or scene.turn, "control": "lights" if lights else place.control}
+    )
+
+
+def _wide_enough(road: Brief, scene: Scene) -> Brief:
+    lanes = 1 + sum(scene.lanes_beside.values())
+    if lanes == 1 or span(road.lanes).lo >= lanes or span(road.lanes).hi < lanes:
+        return road
+    return road.model_copy(update={"lanes": Amount(lo=lanes, hi=road.lanes and road.lanes.hi)})
+
+
+def _length(road: Brief) -> Range:
+    """Returns the lengths that a road can have by what is asked of it, in metres."""
+    if road.length is not None:
+        return span(road.length)
+    spans = [span(each.length) for each in road.clauses for _ in range(int(span(each.count).lo))]
+    is_whole = bool(spans) and all(each.kind == "straight" for each in road.clauses)
+    return Range(
+        sum(max(each.lo, 0.0) for each in spans), sum(each.hi for each in spans) if is_whole else inf
+    )
+
+
+def _long_enough(road: Brief, metres: float, speed: float) -> Brief:
+    have, metres = _length(road), float(ceil(metres / 10) * 10)
+    if have.hi < metres:
+        raise BriefError(
+            f"at {KMH * speed:.0f} km/h the scene needs {metres:.0f} m of road to begin, to happen and to"
+            f" stop, and {have.hi:g} m are asked for; ask for a longer road, or for a slower car"
+        )
+    if have.lo >= metres:
+        return road
+    return road.model_copy(update={"length": Amount(lo=metres, hi=road.length and road.length.hi)})
+
+
+def _drivable(road: Brief, metres: float, speed: float) -> Brief:
+    """Asks for bends that the tested car can drive at its speed, or else for a straight before them."""
+    radius, metres = float(ceil(speed**2 / ASIDE)), float(ceil(metres))
+    turns = [each for each in road.clauses if each.kind not in ("straight", "crest", "dip")]
+    lengths = (
+        span(road.clauses[0].length) if road.clauses and road.clauses[0].kind == "straight" else Range(0.0)
+    )
+    if lengths.lo >= metres or (road.clauses and not turns) or span(road.turns).hi == 0:
+        return road
+    free = [each.kind == "turn" and each.radius is None and each.sharpness is None for each in turns]
+    can_widen = road.radius is None and road.sharpness is None and not road.hard
+    if can_widen and not turns:
+        road = road.model_copy(update={"radius": at_least(radius)})
+    elif can_widen and any(free):
+        wide = (each.model_copy(update={"radius": at_least(radius)}) if is_free else each
+                for each, is_free in zip(turns, free, strict=True))  # fmt: skip
+        road = road.model_copy(
+            update={"clauses": tuple(next(wide) if each in turns else each for each in road.clauses)}
+        )
+    found = outline(road)
+    radii = [each.feature.radius for each in found.groups if each.feature.kind == "turn"] or [
+        found.each_turn.radius
+    ]
+    if all(each and max(each.lo, (found.each_turn.radius or each).lo) >= radius * 0.98 for each in radii):
+        return road
+    straight = Clause(kind="straight", length=at_least(metres))
+    if lengths.hi < metres or (road.starts and road.starts.kind != "straight"):
+        raise BriefError(
+            f"at {KMH * speed:.0f} km/h the tested car needs {metres:.0f} m before bends of less than"
+            f" {radius:.0f} m radius, and the words leave less; ask for wider bends, or for a slower car"
+        )
+    if not road.clauses:
+        return road.model_copy(update={"starts": straight})
+    rest = road.clauses[1:] if road.clauses[0].kind == "straight" else road.clauses
+    return road.model_copy(update={"clauses": (straight, *rest), "starts": None})
 
 
 def check_scene(scene: Scene, brief: Brief) -> None:
@@ -25,6 +221,8 @@ def _faults(scene: Scene, brief: Brief) -> Iterator[str]:
         "far": "three lanes in its direction; write lanes=3" if along < 3 else "",
         "oncoming": "an oncoming lane; write for example against=1" if is_one_way else "",
     }
+    if 2 <= along < (least := 1 + sum(scene.lanes_beside.values())):
+        yield f"the scene needs {least} lanes in the direction of the tested car; write lanes={least}"
     counts: dict[str, float] = {}
     if brief.map is None:
         places = [place for place in brief.junctions if place.kind not in LANE_KINDS]
@@ -40,6 +238,8 @@ def _faults(scene: Scene, brief: Brief) -> Iterator[str]:
         }
         turns = sum(outline(road.as_stretch).turns.hi for road in roads)
         counts = {"junction": len(places), "turn": turns}
+    if scene.turn and lacks.get("junction"):
+        yield f"the tested car that goes {scene.turn} at a junction needs {lacks['junction']}"
     if scene.oncoming in FLOWS and lacks["oncoming"]:
         yield f"oncoming traffic needs {lacks['oncoming']}"
     for role in scene.actors:
@@ -47,6 +247,12 @@ def _faults(scene: Scene, brief: Brief) -> Iterator[str]:
         passes = role.where == "lane" and role.actions and role.actions[0].what in ("cut_in", "overtake")
         if (need := lacks.get(role.where)) and (is_one_way or not passes):
             yield f"'{role}' needs {need}"
+        if (
+            along < 2
+            and any(each.what in LEAVES for each in role.actions)
+            and role.where in ("ahead", "behind")
+        ):
+            yield f"'{role}' needs {lacks['lane']}"
         for mark in filter(None, (role.at, *(action.at for action in role.actions))):
             if mark.number > (count := counts.get(mark.of, inf)):
                 yield f"'{role}' needs {mark.of} {mark.number}, and there are {count:g}; change one of them"

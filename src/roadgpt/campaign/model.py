@@ -1,13 +1,15 @@
 """Budgets, cells, proposed tests and their results, and the interfaces of generators and workers."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, Literal, NamedTuple, Protocol, TypeVar, get_args
 
 from pydantic import Field
 
 from roadgpt.brief.model import Brief, Frozen
-from roadgpt.road import Design
+from roadgpt.brief.plan import read_plan
+from roadgpt.brief.scenarios import Scenario, chosen, scenario
+from roadgpt.road import Design, World
 from roadgpt.run.model import Outcome, Request
 from roadgpt.verdict.verdict import Cause, Side
 
@@ -149,6 +151,29 @@ class Cell:
     in_sequence: bool = False
     """Whether each test is proposed only after the one before has ended, so that every draft differs from all
     earlier ones, as in ``roadgpt run``."""
+
+    @property
+    def points(self) -> list[Scenario]:
+        """The scenarios of its tests, with the values of their parameters; none if it does not test any."""
+        named = chosen(self.settings["scenario"]) if "scenario" in self.settings else []
+        grid = self.settings.get("grid", "nominal")
+        return [point for each in named for point in each.points(grid, not self.request.words)]
+
+    def of_test(self, proposal: Proposal) -> "Cell":
+        """Returns the settings of one test: where scenarios are tested, its own is that of the proposal, and
+        without a description its road the nominal one."""
+        if "scenario" not in self.settings:
+            return self
+        from roadgpt.design.room import world_for  # most campaigns do not need it here
+
+        one = scenario(proposal.origin)
+        brief = self.brief if self.request.words else read_plan(one.plan)
+        setup = self.request.setup.model_copy(update={"scenario": str(one)})
+        usual, values = World().values(), self.request.world.values().items()  # a store names all values
+        world = World().changed(**{name: value for name, value in values if value != usual[name]})
+        world = world_for(brief, setup.staged(world))
+        made = {"words": self.request.words or one.plan, "world": world, "setup": setup}
+        return replace(self, request=self.request.model_copy(update=made), brief=brief)
 
 
 class Pool(Protocol):

@@ -18,6 +18,7 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, Validati
 
 from roadgpt import plugins
 from roadgpt.brief.model import Brief, Frozen
+from roadgpt.brief.scene_fit import fitted
 from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, USUAL_MAP
 from roadgpt.campaign.model import (
     MOST_TESTS,
@@ -166,7 +167,8 @@ class Plan(PlanChoices):
                 "(--drivers a,b), and leave out a search and --no-drive"
             )
         for name in self.generators:
-            if name == WITHOUT_GOAL and not all(words.strip() for words in self.prompts):
+            has_words = "scenario" in self.settings or all(words.strip() for words in self.prompts)
+            if name == WITHOUT_GOAL and not has_words:
                 raise UsageError("the generator 'words' needs a description; give one, or another generator")
         if self.goal is not None and not any(self._searches(name) for name in self.generators):
             raise UsageError(
@@ -181,12 +183,20 @@ class Plan(PlanChoices):
     def cells(self, briefs: Mapping[str, Brief]) -> list[Cell]:
         """Returns all cells, with the Briefs of the prompts. If the plan's World gives no friction, a surface
         that a Brief names, such as a wet road, determines the friction in its cells."""
-        made = [(request, generator, briefs.get(request.words)) for request, generator in self.requests()]
+        made = []
+        for request, generator in self.requests():
+            brief = briefs.get(request.words)
+            if "scenario" in self.settings:  # each test has its own World
+                brief = brief or Brief()
+            else:
+                request = request.model_copy(update={"world": (world := world_for(brief, request.world))})
+                brief = brief and fitted(brief, world.scene, world.first_speed)
+            made.append((request, generator, brief))
         wide = max(2, len(str(len(made))))
         return [
             Cell(
                 name=f"c{number:0{wide}d}",
-                request=request.model_copy(update={"world": world_for(brief, request.world)}),
+                request=request,
                 brief=brief,
                 generator=generator,
                 goal=self.goal if self._searches(generator) else None,

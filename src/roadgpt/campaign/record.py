@@ -318,7 +318,8 @@ class Record:
     def run(self, cell: str, number: int, has_drive: bool = True) -> Run:
         """Returns the stored Run of a test; see ``folder_record.kept_run``. Without its drive, it has no
         verdict."""
-        own, result = self.cell(cell), self.result(cell, number)
+        result = self.result(cell, number)
+        own = self.cell(cell).of_test(result.proposal)
         made, request = self._blueprint(own, result)
         if made is None:
             raise no_road(self.folder, cell, result)
@@ -369,7 +370,7 @@ class Record:
 
     def road(self, cell: Cell, result: Result) -> tuple[Road, Request] | None:
         """Returns the road of a test that has ended, and the request with its World; None without a road."""
-        made, request = self._blueprint(cell, result)
+        made, request = self._blueprint(cell.of_test(result.proposal), result)
         return None if made is None else (made_from(made, request.world, request.setup.geometry), request)
 
     def _blueprint(self, cell: Cell, result: Result) -> tuple[Design | Road | None, Request]:
@@ -653,7 +654,8 @@ def _verdict_of(road: Road, drive: Drive, cell: Cell, result: Result) -> Verdict
     step = len(drive) - 1
     if result.at_s is not None and result.cause in ("out of lane", "fell"):
         step = int(np.argmin(np.abs(drive["s"] - result.at_s)))
-    judged = judge(road, drive, cell.request.world, (step, result.cause))
+    world = cell.request.world.in_weather_of(drive.seed)
+    judged = judge(road, drive, world, (step, result.cause))
     kept = {name: getattr(result, name) for name in ("outcome", *OF_VERDICT)}
     return replace(judged, **{name: value for name, value in kept.items() if value is not None})
 

@@ -463,7 +463,7 @@ def campaign(
         UsageError: the folder contains something other than this campaign, something that decides results has
             changed since its first road was made, or a plug-in is not installed.
     """
-    meter = meter or Meter.of(setup.chat)
+    meter, world = meter or Meter.of(setup.chat), setup.staged(world)
     brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
     request = Request(words=brief.words, seed=seed, world=world_for(brief, world), setup=setup)
     designer_of(setup.designer, setup.chat)

@@ -13,7 +13,7 @@ from roadgpt.network.source import RoadSource
 from roadgpt.plural import plural
 from roadgpt.provenance import NameOrigins, join, known
 from roadgpt.road import Design
-from roadgpt.run import Run, Seconds, Setup, check_parts, perform, prove, seed_of
+from roadgpt.run import REFUSED, Run, Seconds, Setup, check_parts, perform, prove, seed_of
 
 if TYPE_CHECKING:
     from roadgpt.campaign.traces import Trace
@@ -114,19 +114,26 @@ def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTes
 def run_test(task: Task, cell: Cell, earlier: tuple[tuple[Design, ...], ...], meter: Meter) -> Run:
     """Returns the Run of a test, also if no road can be designed, or the language model gives no usable
     reply."""
-    before, request, proposal = meter.spent, cell.request, task.proposal
-    world, setup = request.world, request.setup
+    before, proposal = meter.spent, task.proposal
     try:
+        cell = cell.of_test(proposal)
+        world, setup = cell.request.world, cell.request.setup
         if isinstance(proposal.design, GivenRoad):
             return _run_of_given(source_of(proposal.design, task.road), task, cell)
         if proposal.design is not None:
             return prove(proposal.design, proposal.seed, world, setup, task.number, cell.brief)
         assert cell.brief is not None, "only a cell with words lets its tests be drafted"
-        drafted_before = [design for block in earlier for design in block]
+        drafted_before = [design for block in earlier for design in block if not setup.scenario]
         return perform(cell.brief, proposal.seed, world, setup, task.number, drafted_before, meter)
     except (DesignError, ReplyError) as error:
         spent = meter.spent.since(before)
         return replace(error_run(task, cell, str(error)), spent=spent if spent.calls else None)
+    except PartError:
+        raise
+    except UsageError as error:
+        if "scenario" not in cell.settings:
+            raise
+        return replace(error_run(task, cell, f"{REFUSED}{error}"), outcome="INVALID")
 
 
 def _run_of_given(source: RoadSource, task: Task, cell: Cell) -> Run:

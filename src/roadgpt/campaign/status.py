@@ -3,13 +3,14 @@
 import time
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
 from roadgpt.campaign.folder_record import open_record
 from roadgpt.campaign.model import Goal
 from roadgpt.campaign.record import Record
+from roadgpt.run import REFUSED
 from roadgpt.verdict.verdict import MOSTLY, PARTLY
 
 FRESH = 15.0  # s since the store was last written; a working process writes it every second
@@ -87,6 +88,8 @@ class Status:
     tokens: int
     cost_usd: float
     cells: tuple[CellStatus, ...]
+    scenarios: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
+    """The number of tests with each outcome, or that were refused, of each scenario that is tested."""
 
     @property
     def done(self) -> int:
@@ -178,7 +181,23 @@ def status_of(folder: Path) -> Status:
             tokens=tokens,
             cost_usd=cost,
             cells=cells,
+            scenarios=_scenarios(record)
+            if any("scenario" in each.settings for each in record.cells())
+            else {},
         )
+
+
+def _scenarios(record: Record) -> dict[str, dict[str, int]]:
+    refused = f"description LIKE '{REFUSED}%'"
+    counted = (
+        f"SELECT origin, CASE WHEN {refused} THEN 'refused' ELSE outcome END, count(*) FROM tests "  # noqa: S608
+        "JOIN details USING (cell, number) WHERE outcome IS NOT NULL GROUP BY 1, 2 ORDER BY min(number)"
+    )
+    found: dict[str, dict[str, int]] = {}
+    for origin, outcome, count in record.stream(counted):
+        its = found.setdefault(origin.partition(" ")[0], {})
+        its[outcome] = its.get(outcome, 0) + count
+    return found
 
 
 def _rate(record: Record, done: int, seconds: float, is_running: bool) -> float:

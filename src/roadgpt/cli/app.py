@@ -31,6 +31,7 @@ HEADINGS = {
         "view": "View a road in 3-D with a replay of its drive, or draw pictures.",
         "film": "Film drives: from behind the car, from its hood, or two side by side.",
         "compare": "Measure how similar two roads are, and draw both.",
+        "scenarios": "List the scenarios of regulations and typologies, or show some whole.",
     },
     "Search": {
         "campaign": "Search for failures, or make thousands of roads, with parallel workers.",

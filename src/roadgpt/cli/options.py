@@ -346,6 +346,13 @@ def scene(value: str) -> str:
         raise click.BadParameter(str(error)) from None
 
 
+def scenario(value: str) -> str:
+    """Returns the name of a scenario with the parameters that differ from its own."""
+    from roadgpt.brief.scenarios import scenario as of_catalogue
+
+    return str(of_catalogue(value)) if value else ""
+
+
 def folder(value: str) -> Path:
     """Converts the value of an option to the path of a folder that exists or can be created."""
     if not str(value).strip():
@@ -428,6 +435,7 @@ GUARDS: dict[str, Any] = {
 }  # fmt: skip
 KINDS: dict[str, Any] = {
     "driver": driver, "tracks": recording, "lanes": lanes, "bank": bank, "scene": scene,
+    "scenario": scenario,
 }  # fmt: skip
 """What refuses and what converts the values of fields, where their types do not say it all."""
 ORACLE = Option(
@@ -509,7 +517,17 @@ def _of_models() -> dict[str, tuple[Option, ...]]:
         "lane_width", "lane_width_end", "bank", "shoulder", "friction",
     )  # fmt: skip
     world = tuple(named([ORACLE, *of_world], *order))
-    names = ("reader", "designer", "driver", "simulator", "keep_driving", "tracks", "geometry", "rules")
+    names = (
+        "reader",
+        "designer",
+        "driver",
+        "simulator",
+        "keep_driving",
+        "tracks",
+        "scenario",
+        "geometry",
+        "rules",
+    )
     setup = tuple(named([*of_model(Parts, Heading.DESIGN, "run")], *names))
     making = (*setup[:6], *world, *setup[6:], NO_DRIVE, NO_PLOT, AXES, FORMAT, EXPORT)
     chat = tuple(of_model(ChatSettings, Heading.MODEL))

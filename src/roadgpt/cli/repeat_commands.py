@@ -17,7 +17,7 @@ from roadgpt.road.world import oracle_limits
 from roadgpt.run.model import Request, Run, Setup
 
 # The options of ``roadgpt drive`` that set fields of the Setup; the road's file determines the geometry.
-OF_DRIVES = named(options.SETUP, "driver", "simulator", "keep_driving", "tracks", "rules")
+OF_DRIVES = named(options.SETUP, "driver", "simulator", "keep_driving", "tracks", "scenario", "rules")
 
 
 def replay_lines(run: Run, folder: Path | None = None) -> list[str]:

@@ -7,7 +7,7 @@ from roadgpt.brief.beside import surface_remark
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import scene_plan
 from roadgpt.brief.scene import Scene, scene_text
-from roadgpt.brief.scene_fit import check_scene
+from roadgpt.brief.scene_fit import fitted, needs
 from roadgpt.design.road_search import sufficient_map
 from roadgpt.road import World
 from roadgpt.road.world import KMH, Limits
@@ -19,10 +19,14 @@ def world_for(brief: Brief | None, world: World) -> World:
     The Brief sets the scene, and a surface that it or the scene names, such as a wet road, the friction. For
     a single road, the Brief also sets the lanes and the centre line. The map gets the size that the Brief
     gives; if it gives none and roads of this Brief do not fit on the usual map, a larger map is set. A value
-    that was given to the World is kept. Raises BriefError if the scene needs what the Brief excludes."""
-    found = world.in_scene_of(brief).on_surface_of(brief).with_lanes_of(brief)
+    that was given to the World is kept; the usual speed limit grows to the speed at which a scene begins.
+    Raises BriefError if the scene needs what the Brief excludes."""
+    found = world.in_scene_of(brief).on_surface_of(brief)
     if brief is not None:
-        check_scene(found.scene, brief)
+        brief = fitted(brief, found.scene, found.limits.speed_limit)
+        if found.first_speed > found.limits.speed_limit == Limits().speed_limit:
+            found = found.changed(speed_limit=found.first_speed)
+    found = found.with_lanes_of(brief)
     if brief is None or "map_size" in world.site.model_fields_set:
         return found
     if brief.map_size is not None:
@@ -41,6 +45,7 @@ def world_remarks(brief: Brief, usual: World, found: World) -> tuple[str, ...]:
     is the World that was given, and ``found`` the one that ``world_for`` returned."""
     surface = surface_remark((*brief.beside, *brief.scene.surfaces), found.site.friction)
     said = (surface, *lane_remarks(brief, found), speed_remark(brief, found), scene_remark(brief, found))
+    said += (need_remark(brief, found),)
     said += (map_remark(brief, usual, found),)
     return tuple(remark for remark in said if remark)
 
@@ -57,6 +62,11 @@ def lane_remarks(brief: Brief, found: World) -> Iterator[str]:
         yield f"the words ask for lanes {lanes}{other}"
     if centre is not None and found.section.centre_line != centre:
         yield f"the words ask for a {centre} centre line, but another one is set and used"
+
+
+def need_remark(brief: Brief, found: World) -> str:
+    """Returns a sentence on what the scene needs of the road and the words leave open; empty if nothing."""
+    return needs(brief, fitted(brief, found.scene, found.first_speed))
 
 
 def scene_remark(brief: Brief, found: World) -> str:

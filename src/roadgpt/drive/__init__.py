@@ -141,6 +141,7 @@ def simulate(
     if isinstance(engine, type):
         engine = engine()
     refuse_without_route(road, "driven")
+    world = world.in_weather_of(seed)
     road = world.lay(road)
     refuse_ignored(engine, world, road, replay is not None)
     traffic = None

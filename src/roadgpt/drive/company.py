@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from roadgpt.brief.visibility import visual_range
 from roadgpt.compiled import compiled
 from roadgpt.drive.drive import COLUMNS, Box, FloatArray
 from roadgpt.drive.view import LightAhead, Other
@@ -16,7 +17,7 @@ from roadgpt.traffic.boxes import touch
 
 if TYPE_CHECKING:
     from roadgpt.drive.drive_monitor import DriveMonitor
-    from roadgpt.road import Road
+    from roadgpt.road import Road, World
 
 SEEN = 200.0  # m, between the middles of the car and of another
 _PLACES = [[*COLUMNS].index(name) for name in ("x", "y", "z", "heading", "speed", "s", "t")]
@@ -58,12 +59,15 @@ def look_around(
 class Company:
     """The others on the road during one drive."""
 
-    def __init__(self, traffic: Traffic, box: Box, monitor: "DriveMonitor", road: "Road") -> None:
+    def __init__(
+        self, traffic: Traffic, box: Box, monitor: "DriveMonitor", road: "Road", world: "World"
+    ) -> None:
         self._traffic, self._box, self._monitor = traffic, box, monitor
         passages = road.passages if traffic.lights is not None else ()
         lines = [(each.light_line, each.arrival) for each in passages]
         self._lines = [(line, end) for line, end in lines if line is not None]
-        self._samples = 0
+        self._scene, self._samples = world.scene, 0
+        self._reach: list[float] = []  # from the car's middle to that of each of the others
         self._looks: list[tuple[str, float, float]] = []
         self._sizes, self._order, self._seen = np.empty((0, 2)), np.empty(0, np.int64), np.empty((0, 4))
 
@@ -79,6 +83,7 @@ class Company:
             self._samples += 1
             new = self._traffic.actors[len(self._looks) :]
             self._looks += [(each.kind, *each.size[:2]) for each in new]
+            self._reach += [visual_range(self._scene, each.kind) + each.size.length / 2 for each in new]
             self._sizes = np.array([look[1:] for look in self._looks]).reshape(-1, 2)
             self._order, self._seen = np.empty(len(self._looks), np.int64), np.empty((len(self._looks), 4))
         states, looks = self._traffic.at(time), self._looks
@@ -87,17 +92,23 @@ class Company:
         if touches:
             self._monitor.touch(time)
         near = zip(self._order[:count].tolist(), self._seen[:count].tolist(), strict=True)
-        return tuple([Other._make((looks[k][0], *where, *looks[k][1:])) for k, where in near])
+        return tuple(
+            [
+                Other._make((looks[k][0], *where, *looks[k][1:]))
+                for k, where in near
+                if math.hypot(where[0] - x, where[1] - y) <= self._reach[k]
+            ]
+        )
 
     def lights(self, s: float, time: float) -> tuple[LightAhead, ...]:
         """Returns the lights ahead of station ``s`` of the route, and what they show at this time."""
-        shown = self._traffic.lights
+        shown, reach = self._traffic.lights, visual_range(self._scene, "lights")
         if shown is None:
             return ()
         return tuple(
             [
                 LightAhead(line - s, ("green", "yellow", "red")[shown.shown(end, time)])
                 for line, end in self._lines
-                if line >= s
+                if 0 <= line - s <= reach
             ]
         )

@@ -101,7 +101,8 @@ class View(NamedTuple):
     lanes_right: int = 0
     """Number of driving lanes to the right of the lane that the car is to follow, oncoming lanes included."""
     others: tuple[Other, ...] = ()
-    """The others on the road whose middles are within 200 m of the middle of the car, nearest first."""
+    """The others on the road whose middles are within 200 m of the middle of the car, nearest first; in fog,
+    rain and at night, only those within the visual range."""
     lights: tuple[LightAhead, ...] = ()
     """The traffic lights on the route whose stop lines are ahead of the car, nearest first; empty if no
     traffic drives on the map: then all lights are green."""

@@ -88,7 +88,9 @@ def build_route(design: Design, world: World) -> Route:
         network, passed, shifts = grown.builder.network(), grown.passed, grown.shifts
     if design.left_hand:
         network, shifts = network.mirrored, {road: -shift for road, shift in shifts.items()}
-    return Route.along(network, legs_along(network, passed, shifts) if passed else [])
+    beside = world.scene.lanes_beside
+    outside = beside["left" if design.left_hand else "right"] if any(beside.values()) else None
+    return Route.along(network, legs_along(network, passed, shifts, outside) if passed else [])
 
 
 @dataclass

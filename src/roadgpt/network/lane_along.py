@@ -125,13 +125,16 @@ def _blended(one: Width, other: Width, knots: Array) -> Width:
     return CubicProfile.of_table([*early, *knots.tolist(), *late], table)
 
 
-def legs_along(network: Network, roads: Sequence[int], shifts: Mapping[int, int]) -> list[Leg]:
+def legs_along(
+    network: Network, roads: Sequence[int], shifts: Mapping[int, int], outside: int | None = None
+) -> list[Leg]:
     """Returns the legs of a route along the roads with these ids: on each road, one leg for each lane that it
     uses.
 
     A route begins in the outermost lane from which it can go on (the rightmost one, with traffic on the
-    right). ``shifts`` are the required lane changes by road: the number of lanes to the left, negative to the
-    right. Otherwise the route changes lanes only where its lane does not lead to the next road or would
+    right), or in the one that has ``outside`` lanes outside of it, if there is one. ``shifts`` are the
+    required lane changes by road: the number of lanes to the left, negative to the right. Otherwise the route
+    changes lanes only where its lane does not lead to the next road or would
     prevent a required change, and as late as possible: on the last road before the new lane is needed. Raises
     UsageError if two roads are not joined, or a lane that is needed cannot be reached."""
     ways = [_ways(network, one, two) for one, two in pairwise(roads)]
@@ -142,6 +145,8 @@ def legs_along(network: Network, roads: Sequence[int], shifts: Mapping[int, int]
     ]
     profile, shift = network.road(roads[0]).profile, shifts.get(roads[0], 0)
     lane = max(ways[0], key=abs) if ways else profile.side
+    if outside is not None and len(profile.along_ids) > outside:
+        lane = profile.along_ids[-1 - outside]
     lane += -shift if profile.leads_along(lane) else shift
     found: list[Leg] = []
     for n, road in enumerate(roads):

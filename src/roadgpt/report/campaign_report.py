@@ -95,6 +95,14 @@ def _page(folder: Path, record: Record, status: Status, command: str) -> Page:
     sections += [gallery] if gallery else []
     sections += [Section("Feature map", covered)] if covered else []
     sections.append(Section("Outcomes", _outcomes(record, status, fields, is_paired)))
+    if status.scenarios:
+        heads = ("PASS", "FAIL", "refused", "INVALID", "ERROR")
+        of_each = [row(name, *(its.get(each, 0) for each in heads)) for name, its in status.scenarios.items()]
+        note = "Refused is what cannot happen on its road; results.csv has the parameters of each test."
+        table = Table(
+            "scenarios", "Outcomes by scenario", ["scenario", *map(str.lower, heads)], of_each, note
+        )
+        sections.append(Section("Scenarios", [table]))
     if any(_driven(each)[1] for each in fields):
         sections.append(Section("Failures", failures(folder, record, fields[:MOST_CELLS], goes_on)))
         near: list[Block] = [*outside_table(passed_tests(record)), margins(record, goes_on)]

@@ -22,11 +22,12 @@ from pydantic import (
     model_validator,
 )
 
-from roadgpt.brief.amount import Frozen
+from roadgpt.brief.amount import Amount, Frozen
 from roadgpt.brief.beside import friction_of
 from roadgpt.brief.model import CentreLine
 from roadgpt.brief.plan import read_scene, scene_plan
 from roadgpt.brief.scene import Scene
+from roadgpt.brief.visibility import weather_drawn
 from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, USUAL_MAP
 from roadgpt.errors import BriefError, UsageError
 
@@ -168,6 +169,10 @@ class Parts(Frozen):
     keep_driving: bool = Field(
         False, description="Continue to the end after the car leaves its lane.", json_schema_extra=DRIVE
     )
+    scenario: str = Field(
+        "", description="A scenario of the catalogue: ncap:CCRb, 'r157:cut_in slower=30'.",
+        json_schema_extra=DRIVE,
+    )  # fmt: skip
     tracks: str = Field(
         "", description="Recorded tracks of others on the road, FILE.csv or FILE.xosc.",
         json_schema_extra=DRIVE | RARE,
@@ -322,6 +327,10 @@ def _scene_in(given: Any) -> Any:
         raise ValueError(str(error)) from error
 
 
+def _middle(amount: Amount) -> float:
+    return mean(bound for bound in (amount.lo, amount.hi) if bound is not None)
+
+
 class World(BaseModel):
     """Everything that the roads of a run or a campaign share: a Site, a CrossSection, Limits and a Scene.
     Files have the fields of the first three in one flat table, with the text of the scene if there is one,
@@ -376,6 +385,11 @@ class World(BaseModel):
             return self
         return self.changed(scene=brief.scene)
 
+    def in_weather_of(self, seed: int) -> "World":
+        """Returns the World with the fog and rain that a drive with this seed draws from their ranges."""
+        scene = weather_drawn(self.scene, seed)
+        return self if scene is self.scene else self.changed(scene=scene)
+
     def on_surface_of(self, brief: "Brief | None") -> "World":
         """Returns the World with the friction of the surface that its scene or a Brief names, such as a wet
         road. A friction that was given to this World is kept, even if it equals the default."""
@@ -398,10 +412,15 @@ class World(BaseModel):
     def first_speed(self) -> float:
         """The speed in m/s at which the tested car starts to roll among others: that of the scene, or the
         middle of its range, else the speed limit."""
-        speed = self.scene.speed
-        if speed is None:
-            return self.limits.speed_limit
-        return mean(bound for bound in (speed.lo, speed.hi) if bound is not None) / KMH
+        return self.limits.speed_limit if self.scene.speed is None else _middle(self.scene.speed) / KMH
+
+    def friction_at(self, s: float) -> float:
+        """Returns the friction at a station of the tested car's road: that of a slippery place, or the usual
+        one."""
+        for patch in self.scene.slippery:
+            if 0 <= s - _middle(patch.station) < _middle(patch.length):
+                return _middle(patch.friction)
+        return self.site.friction
 
     def profile_of(self, road: "Road") -> "Profile":
         """Returns the Profile of a road: ``road.profile`` or, if that is None, one made from ``section``.
@@ -410,7 +429,12 @@ class World(BaseModel):
             return road.profile
         if self.section.bank != "none":
             raise UsageError("the road has no superelevation yet; use the road that world.lay(road) returns")
-        return self.section.profile(road.length)
+        return self._profile(road.length)
+
+    def _profile(self, length: float) -> "Profile":
+        profile = self.section.profile(length)
+        beside = self.scene.lanes_beside["right"]
+        return replace(profile, driven=max(profile.driven - beside, 0)) if beside else profile
 
     def lay(self, road: "Road") -> "Road":
         """Returns the road with the lanes and banked bends of this World's ``section``. A road that has a
@@ -419,7 +443,7 @@ class World(BaseModel):
         section = self.section
         if road.profile is not None or all(getattr(section, name) == usual for name, usual in OWN.items()):
             return road
-        profile = section.profile(road.length)
+        profile = self._profile(road.length)
         if section.bank != "none":
             from roadgpt.road.profile import superelevation
 

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 from roadgpt import plugins
 from roadgpt.brief import NoRoomError, read
 from roadgpt.brief.model import Brief
+from roadgpt.brief.scene_fit import fitted
 from roadgpt.chat import Meter, ReplyError, counting
 from roadgpt.check import inspect, rules_of
 from roadgpt.design import check_designer, designer_of
@@ -26,7 +27,7 @@ from roadgpt.design.room import world_for
 from roadgpt.drive import Drive, refuse_ignored, simulate
 from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.loading import require_permission
-from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError
+from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError, UsageError
 from roadgpt.network import made_from, refuse_without_route
 from roadgpt.road import Design, Geometry, Road, World, in_short_segments
 from roadgpt.run.folder import Draw, read_run, seed_in, write_run
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from roadgpt.traffic.recording import Recording
 
 __all__ = [
+    "REFUSED",
     "Draw",
     "Outcome",
     "Request",
@@ -59,6 +61,7 @@ __all__ = [
 USUAL = World()
 PLAIN = Setup()
 MOST_ROUNDS = 3  # drafts of one road; a designer whose last draft still breaks a rule will not improve
+REFUSED = "refused: "  # what the description of a test begins with whose scene cannot be on its road
 WENT_ON = {
     "goal": "then came to the goal",
     "fell": "then fell",
@@ -97,12 +100,14 @@ def perform(
             cannot apply a setting of the world.
         DriverError: the driver hung while it was created.
     """
+    world = setup.staged(world)
     check_parts(setup, world)
     begun = time.perf_counter()
     meter = meter or Meter.of(setup.chat)
     before = meter.spent
     brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
     request = Request(words=brief.words, seed=seed, world=world_for(brief, world), setup=setup)
+    brief = fitted(brief, request.world.scene, request.world.first_speed)
     check_parts(setup, request.world)
     own = seed_of(seed, index)
     with counting(meter, f"road {index}"):
@@ -151,7 +156,7 @@ def prove(
             then has both the findings and the verdict. A road that is physically impossible to drive is never
             driven.
     """
-    world = world.in_scene_of(brief).on_surface_of(brief)
+    world = setup.staged(world).in_scene_of(brief).on_surface_of(brief)
     check_parts(setup, world)
     begun = time.perf_counter()
     design = None if isinstance(blueprint, Road) else blueprint
@@ -240,6 +245,8 @@ def _driven(run: Run, despite_findings: bool = False) -> Run:
         run = replace(run, drive=drive, verdict=verdict)
     except PartError:
         raise
+    except UsageError as error:  # the scene cannot be on this road
+        run = replace(run, outcome="INVALID", description=f"{REFUSED}{error}")
     except Exception as error:  # whatever a driver or a simulator raises costs this road, not the campaign
         said = str(error) if isinstance(error, RoadGPTError) else f"the simulation failed: {error!r}"
         is_lost = isinstance(error, SimulatorError)

@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import SerializerFunctionWrapHandler, model_serializer
 
 from roadgpt.brief.model import Brief, Frozen
+from roadgpt.brief.scenarios import scenario
 from roadgpt.chat import ChatSettings, Spent
 from roadgpt.check import Finding
 from roadgpt.design import DesignReport
@@ -40,7 +41,11 @@ class Setup(Parts):
     @model_serializer(mode="wrap")
     def _to_file(self, fields: SerializerFunctionWrapHandler) -> dict[str, Any]:
         values: dict[str, Any] = fields(self)
-        return {name: value for name, value in values.items() if name != "tracks" or value}
+        return {name: value for name, value in values.items() if value or name not in ("tracks", "scenario")}
+
+    def staged(self, world: World) -> World:
+        """Returns the World with the scene of the scenario, and what its own scene adds to that."""
+        return world.changed(scene=scenario(self.scenario).onto(world.scene)) if self.scenario else world
 
     def essence(self) -> Self:
         """Returns the Setup without the fields that may change when interrupted work is continued."""
@@ -158,8 +163,9 @@ class Run:
 
     @property
     def world(self) -> World:
-        """The map, the friction, the default lanes, and the limits of the rules."""
-        return self.request.world
+        """The map, the friction, the default lanes, the limits of the rules, and the scene with the weather
+        that the drive has drawn."""
+        return self.request.world.in_weather_of(self.seed)
 
     @property
     def is_valid(self) -> bool:

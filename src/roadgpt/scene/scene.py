@@ -23,6 +23,7 @@ from roadgpt.scene.patterns import noise
 from roadgpt.scene.raster import PLANE, SAMPLES, RenderBuffers, draw
 from roadgpt.scene.shade import LaneBoundaries, shade, to_screen
 from roadgpt.scene.trees import Trees, overlay, pictures, plant
+from roadgpt.scene.weather import Weather
 
 Image = NDArray[np.uint8]
 
@@ -55,6 +56,7 @@ class Scene:
     ground: Mesh
     trees: Trees
     lanes: LaneBoundaries
+    weather: Weather | None
     _own: threading.local = field(default_factory=threading.local, repr=False)
 
     def __reduce__(self) -> tuple[Callable[[Road, World], "Scene"], tuple[Road, World]]:
@@ -67,7 +69,7 @@ class Scene:
         road = world.lay(road)
         land, trees = landscape(road, world)
         patches, lanes = patches_of(road, world, land)
-        return cls(road, world, land, Mesh.of(patches), trees, lanes)
+        return cls(road, world, land, Mesh.of(patches), trees, lanes, Weather.of(world.scene, road))
 
     def render(self, camera: Camera, pose: Pose, out: Image | None = None, car: Pose | None = None) -> Image:
         """Returns an RGB image ``(height, width, 3)`` of bytes, as the camera on a car at ``pose`` sees it.
@@ -93,10 +95,13 @@ class Scene:
         count = 0
         for mesh in meshes:
             count = draw(mesh, numbers, buffers, count)
-        shade(buffers, palette_of(car), noise(), numbers, self.lanes, _shade_of(car))
+        palette = palette_of(car)
+        shade(buffers, palette, noise(), numbers, self.lanes, _shade_of(car))
         trees = self.trees
         order = np.argsort((eye.position - trees.places) @ eye.axes[2], kind="stable")
-        overlay(order, trees, pictures(), numbers, buffers)
+        overlay(order, trees, pictures(), numbers, buffers, self.weather is not None)
+        if self.weather is not None:
+            self.weather.change(buffers, palette, numbers, pose if car is None else car)
         to_screen(buffers.picture, screen_table(), out)
         return out
 

@@ -364,7 +364,7 @@ def _place(row: int, i: int, k: int, is_whole: bool) -> tuple[float, float]:
 
 
 @inlined
-def _ray(eye: Array, px: float, py: float, rows: int, columns: int, pixel: float) -> Colour:
+def ray(eye: Array, px: float, py: float, rows: int, columns: int, pixel: float) -> Colour:
     """Returns the direction of a point of the image, with depth 1; a pixel there is ``pixel`` wide."""
     rx, ry = (px - columns * 0.5) * pixel, (py - rows * 0.5) * pixel
     return (
@@ -424,7 +424,7 @@ def shade(
                     continue
                 n = ids[4 * row + k, i]
                 px, py = _place(row, i, k, is_whole)
-                dx, dy, dz = _ray(eye, px, py, rows, columns, pixel)
+                dx, dy, dz = ray(eye, px, py, rows, columns, pixel)
                 is_new = n != last or not is_whole or i % BLOCK == 0
                 if n >= 0:
                     w = 1.0 / max(planes[n, 0] * px + planes[n, 1] * py + planes[n, 2], 1e-6)

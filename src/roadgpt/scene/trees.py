@@ -159,11 +159,13 @@ def _blend(
 
 @compiled
 def overlay(
-    order: NDArray[np.int64], trees: Trees, pictures: NDArray[np.float32], eye: Array, buffers: RenderBuffers
-) -> None:
+    order: NDArray[np.int64], trees: Trees, pictures: NDArray[np.float32], eye: Array, buffers: RenderBuffers,
+    keeps_depth: bool,
+) -> None:  # fmt: skip
     """Draws trees over the image, except where nearer surfaces hide them.
 
-    ``order`` has the indices of the trees, the farthest first; ``eye`` is the camera, as in `raster.draw`."""
+    ``order`` has the indices of the trees, the farthest first; ``eye`` is the camera, as in `raster.draw`.
+    With ``keeps_depth``, the samples that they cover get their depth."""
     places, sizes, looks, tints = trees
     depth, picture = buffers.depth, buffers.picture
     rows, columns = picture.shape[0], picture.shape[1]
@@ -203,7 +205,10 @@ def overlay(
                     continue
                 free = 0
                 for k in range(4):
-                    free += depth[4 * row + k, i] < near
+                    is_free = depth[4 * row + k, i] < near
+                    free += is_free
+                    if keeps_depth and is_free and cover > 0.5:
+                        depth[4 * row + k, i] = near
                 if free > 0:
                     _blend(
                         picture, row, i, pictures, looks[n], start, side, u * side, v * side, cover,

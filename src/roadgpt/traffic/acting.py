@@ -17,7 +17,7 @@ from roadgpt.traffic.way import Way
 
 ROLL = 4.0  # s, after which the first action begins whose begin the scene leaves open
 LAST = 2.5  # s before a meeting, from which on somebody who is moving no longer matches the tested car
-CATCH_UP = 2.0  # s, in which half of the way that is missing before a meeting is made good
+CATCH_UP = 1.0  # s, in which most of the way that is missing before a meeting is made good
 MATCHED = 3.0  # m/s^2, with which somebody matches the tested car
 GRIP = 7.0  # m/s^2, the most sideways; a shorter change of lanes takes longer than its speed says
 SHARPEST = 2.0  # sideways nobody moves faster than the speed ahead divided by this
@@ -136,6 +136,8 @@ class Act:
     pull: float = CHANGE
     slide: Slide | None = None
     slope: float = 0.0
+    is_late: bool = False
+    """Whether it no longer matches the tested car."""
 
     def __post_init__(self) -> None:
         self.goal, self.signs = self.v, dict[int, float]()
@@ -161,7 +163,7 @@ class Act:
         if not self.begun:
             self._match(time, car)
         while self.begun < len(self.deeds):
-            wait = max(self._wait(self.deeds[self.begun], time, car), 0.0)
+            wait = max(self.wait(self.deeds[self.begun], time, car), 0.0)
             if wait >= left:
                 break
             self._go(wait, time, car)
@@ -184,13 +186,12 @@ class Act:
             wanted = car.v + faster + (ahead + faster * time - (self.along - car.s)) / CATCH_UP
             self.goal, self.pull = min(max(wanted, 0.0), FAST), MATCHED
         elif self.meeting and not self.waits:
-            eta = self._eta(car)
-            if eta > LAST or not self.deeds:
+            eta, self.goal, self.pull = self._eta(car), self.cruise, MATCHED
+            if eta > LAST and not self.is_late:
                 missing = self.forward * (self.meeting.own - self.s) - self._planned(eta)
-                self.goal = min(max(self.cruise + missing / CATCH_UP, 0.0), 1.5 * self.cruise)
-                self.pull = MATCHED
-            if eta <= LAST:
-                self.meeting = None if not self.deeds else self.meeting
+                faster = math.copysign(min(abs(missing) / CATCH_UP, math.sqrt(4.0 * abs(missing))), missing)
+                self.goal = min(max(self.cruise + faster, 0.0), 1.5 * self.cruise)
+            self.is_late |= eta <= LAST
 
     def _eta(self, car: Car) -> float:
         """The seconds until the tested car is where they meet, at its speed now."""
@@ -206,7 +207,7 @@ class Act:
         pull = abs(deed.n.get("accel", CHANGE))
         return self.cruise * (eta - last) + reach(last, self.cruise, goal, pull)
 
-    def _wait(self, deed: Deed, time: float, car: Car) -> float:
+    def wait(self, deed: Deed, time: float, car: Car) -> float:
         """Returns in how many seconds an action begins, as far as it can be seen now."""
         n, speed = deed.n, max(car.v, 1e-3)
         if deed.event:

@@ -1,4 +1,4 @@
-"""Commands that show roads: ``roadgpt show``, ``view``, ``film`` and ``compare``."""
+"""Commands that show roads: ``roadgpt show``, ``view``, ``film``, ``compare`` and ``scenarios``."""
 
 import json
 import re
@@ -299,3 +299,49 @@ def compare(
             out.parent.mkdir(parents=True, exist_ok=True)
             save(pair(runs[0], runs[1], axes), out)
         click.echo(str(out), err=as_json)
+
+
+@click.command(
+    cls=GroupedCommand,
+    params=[
+        Argument("names...", "NAME", required=False),
+        options.json_option("Print one JSON object for each scenario.", heading=Heading.OUTPUT),
+    ],
+)
+def scenarios(names: tuple[str, ...], as_json: bool) -> None:
+    """List the scenarios of the catalogue, or show those of a name whole: with the units of their parameters,
+    standard grid, scene and nominal road.
+
+    The values behind a scenario are those that --scenario of run, drive and campaign can change.
+
+    \b
+    roadgpt scenarios
+    roadgpt scenarios r157:cut_in
+    roadgpt scenarios "ncap:CP*" --json
+    roadgpt run "a country road with wide bends" --scenario "r157:cut_in gap=20"
+    """
+    from roadgpt.brief.scenarios import chosen
+
+    source = ""
+    for each in chosen(",".join(names) or "*"):
+        if as_json:
+            told = each._asdict() | {"scene": each.scene_text, "template": each.scene, "road": each.plan}
+            click.echo(json.dumps(told, ensure_ascii=False))
+            continue
+        if each.source.partition(";")[0] != source:
+            source = each.source.partition(";")[0]
+            click.echo(f"{source}\n" if not names else "", nl=False)
+        rows = [("", each.says)]
+        if names:
+            rows += [("source", each.source), ("scene", each.scene_text), ("road", each.plan)]
+            rows += [(f"{name}={value}", each.parameters[name][1]) for name, value in each.values.items()]
+            for block in each.grid:
+                lists = (f"{name} {' '.join(map(str, values))}" for name, values in block.items())
+                rows.append(("grid", "; ".join(lists)))
+        else:
+            rows.append(("", " ".join(f"{name}={value}" for name, value in each.values.items())))
+        click.echo(f"  {each.name}")
+        wide = max(len(head) for head, _ in rows)
+        for head, said in rows:
+            indent = " " * (6 + wide)
+            click.echo(click.wrap_text(said, 80, f"    {head:<{wide}}  ", indent))

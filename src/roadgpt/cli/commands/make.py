@@ -49,14 +49,21 @@ RUN_OPTIONS = (
 )  # fmt: skip
 
 
-@click.command(cls=GroupedCommand, has_simulators=True, params=[options.WORDS, *RUN_OPTIONS])
-def run(words: tuple[str, ...], as_json: bool, quiet: bool, verbose: bool, **rest: Any) -> None:
+OF_RUN = Argument("words...", "DESCRIPTION", options.WORDS.advice, required=False)
+
+
+@click.command(cls=GroupedCommand, has_simulators=True, params=[OF_RUN, *RUN_OPTIONS])
+@click.pass_context
+def run(
+    ctx: click.Context, /, words: tuple[str, ...], as_json: bool, quiet: bool, verbose: bool, **rest: Any
+) -> None:
     """Make roads from a description: design, check, drive and judge them.
 
     \b
     roadgpt run "an uphill road with 3 turns" -n 5
     roadgpt run "two hairpins, then a straight" -n 20 --seed 7 --friction 0.6
     roadgpt run "a winding road" --reader chat --max-cost 0.50
+    roadgpt run --scenario "r157:cut_in slower=30"
 
     \b
     Exit status (roads finished before an error are saved in full):
@@ -65,6 +72,13 @@ def run(words: tuple[str, ...], as_json: bool, quiet: bool, verbose: bool, **res
       3  nothing could be designed
       4  a language model could not be used, or its token or cost limit was hit
       6  the results do not meet --fail-on or --baseline; see --help-all"""
+    if not words:
+        if not rest["scenario"]:
+            raise click.MissingParameter(ctx=ctx, param=OF_RUN)
+        from roadgpt.brief.scenarios import LANE_WIDTH, scenario
+
+        words = (scenario(rest["scenario"]).plan,)
+        rest |= {"is_plan": True} | ({} if "lane_width" in options.typed(ctx) else {"lane_width": LANE_WIDTH})
     refuse_file(text := " ".join(words), "drives", "drive")
     carry_out(Screen(rest["roads"], as_json, quiet, verbose), text, **rest)
 
@@ -94,6 +108,7 @@ def carry_out(
     given["reader"] = options.reader_of(given)
     chat = options.chat_of(given, given["reader"], given["designer"])
     setup = Setup(drives=not given.pop("no_drive"), chat=chat, **given)
+    world = setup.staged(world)
     draw = beside(pictures, axes, formats)
     meter = Meter.of(chat)
     brief = brief_of(words, world, setup, meter)
@@ -144,10 +159,11 @@ def understood(brief: Brief, world: "World", given: "World") -> str:
 
 def all_remarks(brief: Brief, world: "World", given: "World") -> tuple[str, ...]:
     """Returns sentences on what is not built, or not as described; ``given`` is the World of the user."""
-    from roadgpt.design.room import lane_remarks, map_remark, scene_remark, speed_remark
+    from roadgpt.design.room import lane_remarks, map_remark, need_remark, scene_remark, speed_remark
 
     found = (*remarks(brief, world.site.map_size, world.site.friction), *lane_remarks(brief, world))
-    found += speed_remark(brief, world), scene_remark(brief, world), map_remark(brief, given, world)
+    found += speed_remark(brief, world), scene_remark(brief, world), need_remark(brief, world)
+    found += (map_remark(brief, given, world),)
     return tuple(filter(None, found))
 
 
@@ -394,7 +410,7 @@ DRIVE_OPTIONS = (
     options.seed("Seed for the driver.", 1),
     options.out("Folder for the runs. [default: none is written, or with --again CAMPAIGN/again]"),
     *options.WORLD,
-    *named(options.SETUP, "driver", "simulator", "keep_driving", "tracks", "geometry", "rules"),
+    *named(options.SETUP, "driver", "simulator", "keep_driving", "tracks", "scenario", "geometry", "rules"),
     Option("--again", "Drive tests of a campaign again.", bool, heading=Heading.AGAIN),
     *(each.but(heading=Heading.AGAIN) for each in OF_AGAIN),
     *(*options.GATE, options.JUNIT, *options.SCREEN),
@@ -452,6 +468,7 @@ def drive(
         reject_used(out)
     world = options.world_of(rest)
     setup = Setup(**rest)
+    world = setup.staged(world)
     with redirect_stdout(sys.stderr):
         check_parts(setup, world)  # reports a missing driver before any road is read
     roads = roads_in(files)

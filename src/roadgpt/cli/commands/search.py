@@ -237,6 +237,10 @@ CAMPAIGN_OPTIONS = (
            click.Choice(["failures", "coverage", "hardest", "boundary"])),
     Option("--generator", "Test generator. [default: 'quality_diversity' with --goal, else 'words', which "
            "does not search]"),
+    Option("--scenario scenarios", "Test scenarios, on the roads of a description or on their own: 'ncap:*', "
+           "r157:cut_in,ncap:CCRb.", metavar="NAME,...", heading=Heading.DRIVE),
+    Option("--grid", "With --scenario: test each with its nominal values, or on its standard grid.",
+           click.Choice(["nominal", "standard"]), "nominal", heading=Heading.DRIVE),
     Option("--seconds", "Start no more tests after this many seconds.", SECONDS),
     options.seed("The same seed gives the same table.", 0),
     options.out("Folder for the campaign. [default: a new one]"),
@@ -272,6 +276,7 @@ def campaign(ctx: click.Context, /, words: tuple[str, ...], out: Path | None, **
     \b
     roadgpt campaign --on routes --drivers lane_centring,pure_pursuit --paired
     roadgpt campaign "an uphill road with 3 turns" --goal failures -n 200 -j 2 --seed 7
+    roadgpt campaign --scenario "ncap:*" --grid standard --driver lane_centring -j 2
     roadgpt campaign study.toml -j 16 --out study
     roadgpt show study"""
     from roadgpt import plugins
@@ -279,7 +284,7 @@ def campaign(ctx: click.Context, /, words: tuple[str, ...], out: Path | None, **
     from roadgpt.run.atomic import to_bytes
     from roadgpt.run.folder import new_folder
 
-    if not words and given["on"] is None:
+    if not (words or given["on"] or given["scenarios"]):
         raise click.MissingParameter(ctx=ctx, param=ctx.command.params[0])
     text = to_bytes(" ".join(words)).decode()  # what a broken terminal put into it becomes an escape
     refuse_file(text, "tests", "campaign", "--on")
@@ -288,7 +293,10 @@ def campaign(ctx: click.Context, /, words: tuple[str, ...], out: Path | None, **
     plan.check()
     plugins.find("executors", given["executor"])
     if out is None:
-        out = new_folder(Path(text).stem if text.endswith(".toml") else text or given["on"], plan.seeds[0])
+        out = new_folder(
+            Path(text).stem if text.endswith(".toml") else text or given["on"] or given["scenarios"],
+            plan.seeds[0],
+        )
     given["gate"] = options.gate_of(given, out)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
         was_there = begin(plan, out, given.pop("again"), roads)
@@ -356,6 +364,7 @@ OF_DESIGN = {"words", "goal", "generator", "is_plan", "reader", "designer"}
 
 def _described(ctx: click.Context, text: str, rest: dict[str, Any]) -> "tuple[Plan, Set[str]]":
     """Returns the plan of a description or of given roads, and the fields of the World that were typed."""
+    from roadgpt.brief.scenarios import LANE_WIDTH, chosen
     from roadgpt.campaign.model import WITH_GOAL, WITHOUT_GOAL, CellBudget
     from roadgpt.campaign.plan import Plan
 
@@ -368,6 +377,18 @@ def _described(ctx: click.Context, text: str, rest: dict[str, Any]) -> "tuple[Pl
                 f"--on tests roads that are there, and {what} is for roads that are designed; leave one of "
                 "them out"
             )
+    world, settings, tests = options.world_of(rest), dict[str, Any](), rest["tests"]
+    if rest["scenarios"]:
+        if rest["goal"] or rest["on"] or rest["generator"] not in (None, WITHOUT_GOAL):
+            raise UsageError(
+                "--scenario is for roads of a description; leave --goal, --on and --generator out"
+            )
+        settings = {"scenario": rest["scenarios"], "grid": rest["grid"]}
+        tests = tests or sum(
+            1 for each in chosen(rest["scenarios"]) for _ in each.points(rest["grid"], not text)
+        )
+        if not text and "lane_width" not in told:
+            world = world.changed(lane_width=LANE_WIDTH)
     rest["reader"] = options.reader_of(rest)
     rest["generator"] = rest["generator"] or (WITH_GOAL if rest["goal"] else WITHOUT_GOAL)
     lists = {f"{name}s": (rest[name],) for name in ("designer", "simulator", "generator", "seed")}
@@ -375,9 +396,10 @@ def _described(ctx: click.Context, text: str, rest: dict[str, Any]) -> "tuple[Pl
     plan = Plan(
         prompts=(text,),
         on=rest["on"] or "",
-        budget=CellBudget(tests=rest["tests"], seconds=rest["seconds"]),
+        budget=CellBudget(tests=tests, seconds=rest["seconds"]),
+        settings=settings,
         drives=not rest["no_drive"],
-        world=options.world_of(rest),
+        world=world,
         chat=options.chat_of(rest, rest["reader"], rest["designer"]),
         **lists,
         **{name: rest[name] for name in names},
@@ -444,10 +466,10 @@ def _tell(out: Path, plan: "Plan", was_there: bool) -> None:
         cells = record.cells()
     briefs = {cell.request.words: (cell.brief, cell.request.world) for cell in cells if cell.brief}
     for words, (brief, world) in briefs.items():
-        if len(plan.prompts) == 1:
+        if len(plan.prompts) == 1 and words:
             click.echo(understood(brief, world, plan.world))
             continue
-        for said in world_remarks(brief, plan.world, world):
+        for said in world_remarks(brief, plan.world, world) if words else ():
             click.echo(f"note: {words}: {said}")
     if plan.on:
         count, tests = len(plan.settings["roads"]), plan.budget.tests or 0
@@ -456,6 +478,9 @@ def _tell(out: Path, plan: "Plan", was_there: bool) -> None:
         told += f"; the first {tests:,} are tested" * (tests < count)
         told += f"; {tests:,} tests, so roads are driven again with other seeds" * (tests > count)
         click.echo(told)
+    if points := cells[0].points:
+        where = "on the roads of the description" if cells[0].request.words else "each on its nominal road"
+        click.echo(f"{plural(len(points), 'point')} of {plan.settings['scenario']}, {where}")
     if len(cells) > 1:
         what = "the same roads for each driver" if plan.paired else "each with tests of its own"
         click.echo(f"{len(cells):,} cells, {what}")

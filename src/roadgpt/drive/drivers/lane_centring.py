@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from roadgpt.brief.visibility import visual_range
 from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.driving_line import line_along, pedals_for, stations
 from roadgpt.drive.keeping_distance import HARDEST, ROLLS, KeepingDistance, slowed
@@ -67,7 +68,7 @@ class LaneCentring:
         hardest: largest deceleration, in m/s^2.
         acceleration: largest acceleration, in m/s^2.
         lag: time from the image to the steering, in seconds.
-        sight: how far ahead the camera sees the lane, in metres.
+        sight: how far ahead the camera sees the lane, in metres; in fog, the visual range if that is less.
         aside: how far to either side the camera sees the lane, in metres.
         eye_height: height of the camera above the road, in metres.
         headway: time in which an error is corrected, in seconds.
@@ -106,6 +107,7 @@ class LaneCentring:
         heights = road.at(s, middle)[:, 2].tolist()
         self._heights = heights + heights[-1:] * (len(self._line.x) - len(heights))
         self._speed_limit = world.limits.speed_limit
+        self._sight = min(self.sight, visual_range(world.scene, "lane"))
         self._steps, self._bend, self._lateral, self._speed = 0, 0.0, 0.0, self._speed_limit
         self._waiting: deque[float] = deque()
         self._distance, self._is_emergency = KeepingDistance(self._line), False
@@ -145,12 +147,12 @@ class LaneCentring:
         v = view.speed
         gap, along, follows, vehicles = self._distance.ahead(view).T
         is_vehicle = vehicles > 0
-        is_seen = is_vehicle | (gap < self.sight)
+        is_seen = is_vehicle | (gap < self._sight)
         closing = np.where(is_seen, np.maximum(v - along, 0.0), 0.0)
         needed = float((closing**2 / 2 / np.maximum(gap - SHORT, 0.1)).max(initial=0.0))
         if v > AWAKE and needed > EMERGENCY:
             self._is_emergency = True
-        elif v < ROLLS or not closing[gap < self.sight].any():
+        elif v < ROLLS or not closing[gap < self._sight].any():
             self._is_emergency = False
         if self._is_emergency:
             return -HARDEST
@@ -168,7 +170,7 @@ class LaneCentring:
         line, cos, sin = self._line, math.cos(view.heading), math.sin(view.heading)
         eye = self._heights[line.place(view.s)[0]] + self.eye_height
         highest, distance, out = -math.inf, 0.0, list[float]()
-        while distance <= self.sight:
+        while distance <= self._sight:
             i, _ = line.place(view.s + distance)
             dx, dy = line.x[i] - view.x, line.y[i] - view.y
             ahead = dx * cos + dy * sin

@@ -65,20 +65,26 @@ class Reference:
 
     def steer(self, view: View) -> Command:
         """Steers for the bend ahead and against the lateral error; follows the planned speed."""
+        steer, _ = self.steered(view, self._line.curvature)
+        command = Command(steer, *pedals(self._line, self._speed, view.s, max(view.vx, 0.0)))
+        return self._distance.kept(view, self._signs.obeyed(view, command))
+
+    def steered(self, view: View, curvature: list[float]) -> tuple[float, float]:
+        """Returns the steering angle for the curvature of the car's motion in 1/m at each station of the
+        line, and the lateral error in metres."""
         line, v = self._line, max(view.vx, 0.0)
         i, share = line.place(view.s)
         error = view.t - line.offset[i] - share * (line.offset[i + 1] - line.offset[i])
         heading = line.heading[i] + share * (line.heading[i + 1] - line.heading[i])
         turned = math.remainder(view.heading - heading, TURN)
         j, share = line.place(view.s + self.lag * v)
-        bend = line.curvature[j] + share * (line.curvature[j + 1] - line.curvature[j])
+        bend = curvature[j] + share * (curvature[j + 1] - curvature[j])
         # A road that falls to the right needs force to the left, as a bend to the left does.
         lateral = v * v * bend + GRAVITY * math.sin(line.superelevation[j])
         drift = self.to_rear * bend - self.slip * lateral
         steer = self.wheelbase * bend + self.understeer * lateral
         steer -= self.gain * (error + (self.ahead + self.headway * v) * (turned + drift))
-        command = Command(steer, *pedals(line, self._speed, view.s, v))
-        return self._distance.kept(view, self._signs.obeyed(view, command))
+        return steer, error
 
 
 FRICTION_USED = 0.72  # share of the friction that bends may need; the rest is for corrections

@@ -4,6 +4,7 @@ and a second one that replays a recorded drive.
 Source: ASAM OpenSCENARIO 1.2.0, user guide and XML schema. An entity's origin is the middle of its rear axle
 on the ground. Angles are right-handed, so pitch is positive nose down (ISO 8855)."""
 
+import math
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
@@ -14,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from shapely.geometry import LineString
 
+from roadgpt.brief.visibility import LOW_SUN, fog_of, rain_of
 from roadgpt.export.ego import (
     CAR,
     Others,
@@ -31,7 +33,8 @@ from roadgpt.network import legs_of, network_of, only_road
 from roadgpt.road import Road, World
 
 EGO = "Ego"
-DATE = "2026-01-01T00:00:00"  # the same in every file, so that the same road gives the same bytes
+DATE = "2026-01-01T00:00:00"  # the same in every file, so that the same road gives the same bytes; midnight
+MIDNIGHT = -0.5  # rad, elevation of the sun at night, well below that of any twilight
 KEPT = 0.02  # m/s, or s: tolerance of the simplified speeds
 PATIENCE = 60.0  # s beyond the planned duration, after which a player stops
 STANDS = 0.01  # m; a car that has moved less is taken as standing
@@ -97,7 +100,7 @@ def scenario(road: Road, world: World, map_: str) -> XmlElement:
         # a route that turns back ends beside its start
         driven = XmlElement("TraveledDistanceCondition", {"value": round(road.length / 2, DECIMALS)})
         also["half of it is driven"] = _of_ego(driven)
-    root, actions, story = _frame(world, map_, told)
+    root, actions, story = _frame(road, world, map_, told)
     _start(actions, waypoints[0], 0.0)
     assigned = actions.add("PrivateAction").add("RoutingAction").add("AssignRouteAction")
     points = assigned.add("Route", {"name": "to the end", "closed": "false"})
@@ -141,7 +144,7 @@ def replay(road: Road, world: World, poses: Poses, map_: str) -> XmlElement:
     others = [] if poses.others is None else [*_moved(poses.others, float(time[-1]))]
     if others:
         told = f"A car repeats its recorded drive among {len(others)} others."
-    root, actions, story = _frame(world, map_, told, others)
+    root, actions, story = _frame(road, world, map_, told, others)
     _start(actions, _in_world(rows[0]), round(float(poses.speed[0]), DECIMALS))
     begin = _drives_off(ground)
     maneuver = _act(story, "repeat")
@@ -289,7 +292,7 @@ def _drives_off(ground: Array) -> int:
 
 
 def _frame(
-    world: World, map_: str, description: str, others: Sequence[Moved] = ()
+    road: Road, world: World, map_: str, description: str, others: Sequence[Moved] = ()
 ) -> tuple[XmlElement, XmlElement, XmlElement]:
     root = XmlElement("OpenSCENARIO")
     told: dict[str, Value] = {"date": DATE, "description": description, "author": "RoadGPT"}
@@ -302,9 +305,30 @@ def _frame(
         entities.add("ScenarioObject", {"name": other.name}).extended(_body(other))
     board = root.add("Storyboard")
     actions = board.add("Init").add("Actions")
-    environment = actions.add("GlobalAction").add("EnvironmentAction").add("Environment", {"name": "road"})
-    environment.add("RoadCondition", {"frictionScaleFactor": world.site.friction})
+    _environment(actions.add("GlobalAction").add("EnvironmentAction"), road, world)
     return root, actions.add("Private", {"entityRef": EGO}), board.add("Story", {"name": "drive"})
+
+
+def _environment(action: XmlElement, road: Road, world: World) -> None:
+    """Adds friction, and the weather and light of the scene. Azimuths of the sun count clockwise from
+    north, which is +y; those of a low sun are ahead of the car at its start."""
+    environment = action.add("Environment", {"name": "road"})
+    environment.add("RoadCondition", {"frictionScaleFactor": world.site.friction})
+    scene = world.scene
+    if scene.light == "night":
+        environment.add("TimeOfDay", {"animation": "false", "dateTime": DATE})
+    if not (scene.fog or scene.rain or scene.light):
+        return
+    weather = environment.add("Weather")
+    if scene.light:
+        azimuth = (math.pi / 2 - float(road.heading(start_of(road)))) % (2 * math.pi)
+        sun = (azimuth, LOW_SUN) if scene.light == "low_sun" else (0.0, MIDNIGHT)
+        weather.add("Sun", {"azimuth": round(sun[0], DECIMALS), "elevation": round(sun[1], DECIMALS)})
+    if scene.fog:
+        weather.add("Fog", {"visualRange": fog_of(scene)})
+    if scene.rain:
+        rain: dict[str, Value] = {"precipitationType": "rain", "precipitationIntensity": rain_of(scene)}
+        weather.add("Precipitation", rain)
 
 
 def _vehicle() -> XmlElement:

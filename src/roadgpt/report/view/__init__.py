@@ -19,6 +19,8 @@ from PIL import Image
 
 from roadgpt.brief import sentence
 from roadgpt.brief.junctions import NAMES
+from roadgpt.brief.scene import Scene, scene_text
+from roadgpt.brief.visibility import rain_of
 from roadgpt.check.describing import describe
 from roadgpt.errors import ExportError, RoadGPTError, UsageError, explained
 from roadgpt.export.edges import FOOT, OUTSIDE, RUN, stations
@@ -46,6 +48,7 @@ from roadgpt.scene.patterns import noise
 from roadgpt.scene.scene import landscape
 from roadgpt.scene.shade import AIR, ASPHALT, DRIER, LUSH, PAINTED, STONES, panorama, to_screen
 from roadgpt.scene.trees import SIDE, Trees, pictures
+from roadgpt.scene.weather import Weather
 from roadgpt.traffic.actor import STEP
 from roadgpt.verdict.verdict import MOSTLY, PARTLY
 
@@ -63,6 +66,7 @@ SCRIPTS = (
     "signs.js",
     "car.js",
     "others.js",
+    "weather.js",
     "stage.js",
     "cameras.js",
     "plan.js",
@@ -165,7 +169,8 @@ def scene(run: Run) -> dict[str, Any]:
         "colour": OUTCOMES.get(outcome_of(run), INK),
         "letters": LETTERS.get(OUTCOMES.get(outcome_of(run), INK), "#ffffff"),
         "description": run.description,
-        "about": origin(run) + ("" if run.road.has_way else OF_FIRST_ROAD),
+        "about": "; ".join(filter(None, [origin(run), _weather_text(run.world.scene)]))
+        + ("" if run.road.has_way else OF_FIRST_ROAD),
         "words": _words(run.road),
         "road": _road(run.road, run.world, is_only),
         "land": _land(*landscape(run.world.lay(run.road), run.world)),
@@ -174,6 +179,7 @@ def scene(run: Run) -> dict[str, Any]:
         "severe": SCALE,
         "drive": _drive(run),
         **_others(run),
+        **_weather(run.road, run.world),
         "places": _places(run),
         **more,
     }
@@ -251,6 +257,15 @@ def _others(run: Run) -> dict[str, Any]:
             **{name: rounded(column, digits) for (name, digits), column in columns},
         })  # fmt: skip
     return {"others": {"step": STEP, "actors": actors}}
+
+
+def _weather_text(scene: Scene) -> str:
+    return scene_text(Scene(fog=scene.fog, rain=scene.rain, light=scene.light))
+
+
+def _weather(road: Road, world: World) -> dict[str, Any]:
+    weather = Weather.of(world.scene, road)
+    return {} if weather is None else {"weather": {**weather._asdict(), "rain": rain_of(world.scene)}}
 
 
 def _places(run: Run) -> list[dict[str, Any]]:

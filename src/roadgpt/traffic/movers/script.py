@@ -17,7 +17,7 @@ from roadgpt.check.measures import measure
 from roadgpt.errors import UsageError
 from roadgpt.plural import plural
 from roadgpt.road.road import START
-from roadgpt.traffic.acting import LAST, LATERAL, ROLL, Act, Car, Deed, Meeting, pull_of, reach
+from roadgpt.traffic.acting import LAST, LATERAL, ROLL, Act, Car, Deed, Meeting, pull_of, reach, time_over
 from roadgpt.traffic.actor import SIZES, Actor, FloatArray, TestedCar, corners
 from roadgpt.traffic.places import offset_of, parked_rows, way_of
 from roadgpt.traffic.way import Way
@@ -39,6 +39,7 @@ STANDS = 2.0  # m between several alike that stand
 ONCOMING = 40.0  # m between several alike that come towards the tested car
 EASY = 4.0  # m/s^2, with which the tested car can stop before who stands or is slow
 INTO = 1.0  # s of headway with which one turns in or merges ahead of the tested car
+USUAL_AWAY = 6.0  # m from the tested car's path, of who crosses, as far as it matters for where
 NEAR = 10.0  # m before the meeting, where a vehicle waits at a junction
 CROSSES: tuple[What, ...] = ("cross", "turn_in")
 
@@ -174,7 +175,11 @@ class _Placing:
         self.size, self.n = (
             SIZES[role.kind],
             _numbers(role)
-            | {key: value for key, value in _numbers(place).items() if key in ("gap", "headway", "station")},
+            | {
+                key: value
+                for key, value in _numbers(place).items()
+                if key in ("gap", "headway", "lead", "station")
+            },
         )
         self.half = (self.size.length + self.car.length) / 2
         self.limit = self.world.limits.speed_limit
@@ -280,14 +285,25 @@ class _Placing:
                 f"{self._one()} would have to begin its action before the begin of the road; give another "
                 "gap, or another speed"
             )
+        first = self.deeds[0] if self.deeds else None
+        if act.waits and first and act.wait(first, 0.0, self.car) < 0:
+            raise UsageError(
+                f"{self._one()} cannot be where it meets the tested car in time; give another place, or more "
+                "speed"
+            )
+        if act.held and first and act.wait(first, 0.0, self.car) == math.inf:
+            raise UsageError(f"{self._one()} never comes to where it is to act; give another gap or speed")
         for deed in self.deeds:
             if deed.what in LATERAL and deed.what != "merge":
                 self._leads_to(act, deed)
 
     def _own_way(self) -> Way:
         if self.number not in self.ways:
-            is_free = self.where in ("crossing", "beside")
-            near = self.car.s + self.half + self.car.v * (ROLL + HEADWAY if is_free else LAST)
+            lasts = LAST
+            if self.where in ("crossing", "beside"):
+                own = time_over(self.n.get("away", USUAL_AWAY), self.cruise, pull_of(self.kind, self.cruise))
+                lasts = max(ROLL + HEADWAY, own + 1.0)
+            near = self.car.s + self.half + self.car.v * lasts
             if self.role.at:
                 first, last = self.script.stretch(self.role.at)
                 near = {"after": last, "in": first, "before": first - EASY * self.car.v}[self.role.at.word]
@@ -345,8 +361,8 @@ class _Placing:
         if self.where == "behind" or (self.first == "overtake" and self.forward > 0):
             reach = -reach
         behind = v if self.where == "behind" else car.v
-        if "station" in n:
-            s = n["station"]
+        if "station" in n or "lead" in n:
+            s = n["station"] if "station" in n else car.s + n["lead"]
         elif self.role.at:
             first, last = self.script.stretch(self.role.at)
             half = self.size.length / 2 + 5.0

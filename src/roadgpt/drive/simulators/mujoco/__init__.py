@@ -60,7 +60,7 @@ class MujocoSimulator:
         if traffic is not None:
             from roadgpt.drive.company import Company  # only drives among others load it
 
-            company = Company(traffic, self.car.box, monitor, road)
+            company = Company(traffic, self.car.box, monitor, road, world)
         guard.start(road, world, seed)
         middle = float(world.profile_of(road).middle(monitor.start))
         rolls = traffic is not None or world.scene.speed is not None
@@ -84,6 +84,8 @@ class MujocoSimulator:
             steer, throttle, brake = guard.ask(view)
             if monitor.touched is not None:
                 throttle, brake = 0.0, 1.0  # whatever the driver says
+            if world.scene.slippery:
+                vehicle.stand_on(world.friction_at(now[station]))
             vehicle.move(steer, throttle, brake)
             look()
             rows.append(vehicle.row.tobytes())

@@ -135,6 +135,12 @@ class Vehicle:
         self._move(steer, throttle, brake, STEPS)
         self.row[TIME] = round(self._data.time, 9)
 
+    def stand_on(self, friction: float) -> None:
+        """Sets the friction of the ground under all wheels."""
+        *before, ground, car = self._parts
+        self._ground = ground._replace(friction=friction)
+        self._parts = (*before, self._ground, car)
+
     def see(self) -> dict[str, float]:
         """Returns the present state of the car as a dictionary with the names in COLUMNS as keys."""
         return dict(zip(COLUMNS, self.row.tolist(), strict=True))

@@ -18,7 +18,8 @@ function makeStage(canvas, scene, trip, fastest) {
   const world = new THREE.Scene();
   world.fog = new THREE.Fog(COLOURS.haze, 0, HAZE);
   const [dome, wood] = [sky(), trees(scene, origin)];
-  world.add(dome, wood.group, ...daylight());
+  const lights = daylight();
+  world.add(dome, wood.group, ...lights);
   world.add(landMesh(scene, origin, meadowGrain(renderer)), pavement(scene, origin, renderer));
   if (hasEnds(scene)) world.add(startAndGoal(scene, origin));
   world.add(scene.network ? networkMarkings(scene, origin) : markings(scene, origin), signMeshes(scene, origin));
@@ -40,6 +41,8 @@ function makeStage(canvas, scene, trip, fastest) {
   world.add(car.group, dot);
   const others = scene.others && makeOthers(scene);
   if (others) world.add(others.group);
+  const weather = scene.weather && makeWeather(scene, world, { dome, wood, lights, car, others });
+  let now = 0;
 
   const camera = new THREE.PerspectiveCamera(ORDINARY_VIEW, 1, 0.5, Math.max(20000, 8 * radius));
   camera.up.set(0, 0, 1);
@@ -62,6 +65,7 @@ function makeStage(canvas, scene, trip, fastest) {
       car.show(pose, origin, severeColour(scene, pose.outside || 0));
       dot.position.copy(car.group.position);
       if (others) others.show(pose.time, origin);
+      now = pose.time;
     },
     // `away` is how far the free camera is from what it looks at: the road has no haze for it; 0 for the others.
     draw(away, hasLine) {
@@ -74,6 +78,7 @@ function makeStage(canvas, scene, trip, fastest) {
       world.fog.far = world.fog.near + HAZE + (away && radius);
       dome.position.copy(camera.position);
       wood.face(camera);
+      if (weather) weather.show(camera, away, now);
       const isFar = away > 60 + AFAR * radius;
       line.visible = hasLine && !isFar;
       afar.visible = isFar && (hasLine || !scene.drive);

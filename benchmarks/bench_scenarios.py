@@ -1,0 +1,112 @@
+"""Runs the catalogue of scenarios with the test robot, and lets an outside referee of traffic judge the
+exported files by truths that were written before the scenarios were built.
+
+    python benchmarks/bench_scenarios.py --referee FOLDER             all scenarios on their nominal roads
+    python benchmarks/bench_scenarios.py --referee FOLDER --roads     on the roads of tests/traffic/roads.json
+    python benchmarks/bench_scenarios.py --referee FOLDER --only 'r157:*' --seeds 20
+
+A pair of a scenario and a road is found, where every key of the truth holds; refused, with its sentence; or
+missed, with the keys that do not hold. On other roads than the nominal one only who is there, what they do,
+and whether they meet is asked: numbers belong to the nominal road."""
+
+import argparse
+import importlib
+import json
+import shlex
+import sys
+import tempfile
+from collections import Counter
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any
+
+from roadgpt.brief.scenarios import LANE_WIDTH, scenarios
+from roadgpt.errors import DesignError, UsageError
+from roadgpt.road import World
+from roadgpt.run import Run, Setup, perform
+from roadgpt.run.exporting import export
+
+TRUTHS = Path(__file__).resolve().parents[1] / "tests" / "traffic"
+ANYWHERE = ("kind", "where", "does", "n")
+"""The keys of an actor that hold on any road."""
+
+
+def driven(name: str, plan: str = "", seed: int = 1, **of_world: Any) -> Run:
+    """Drives a scenario on its nominal road or that of a plan."""
+    one = scenarios()[name]
+    world = World().changed(**({} if plan else {"lane_width": LANE_WIDTH}), **of_world)
+    setup = Setup(driver="robot", reader="plan", scenario=name)
+    return perform(plan or one.plan, seed, world, setup)
+
+
+def judged(referee: Any, run: Run, truth: dict[str, Any]) -> tuple[list[str], dict[str, Any]]:
+    """Returns the keys of the truth that do not hold in the exported files, and what was measured."""
+    with tempfile.TemporaryDirectory() as folder:
+        export(run, folder, ["opendrive", "openscenario"], lambda said: None)
+        holds, measured = referee.check(f"{folder}/road.drive.xosc", truth)
+    return [key for key, value in holds.items() if not value], measured
+
+
+def anywhere(truth: dict[str, Any]) -> dict[str, Any]:
+    """Returns what of a truth holds on any road."""
+    actors = []
+    for each in truth.get("actors", ()):
+        does = each["does"] if isinstance(each["does"], list) else [each["does"]]
+        plain = [one["does"] if isinstance(one, dict) else one for one in does]
+        actors.append({**{key: each[key] for key in ANYWHERE if key in each}, "does": plain})
+    found = {key: truth[key] for key in ("sound", "conditions", "flow") if key in truth}
+    return found | ({"actors": actors} if actors else {})
+
+
+def main() -> None:
+    """Prints a line for each pair, and the counts."""
+    args = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    args.add_argument("--referee", type=Path, required=True, help="folder of referee_traffic.py")
+    args.add_argument("--roads", action="store_true")
+    args.add_argument("--only", default="*")
+    args.add_argument("--seeds", type=int, default=1)
+    args.add_argument("--road", type=int, default=0, help="only this road, from 1")
+    args.add_argument("--verbose", action="store_true")
+    given = args.parse_args()
+    sys.path.insert(0, str(given.referee))
+    referee = importlib.import_module("referee_traffic")
+    catalogue = json.loads((TRUTHS / "catalogue.json").read_text())["scenarios"]
+    roads = json.loads((TRUTHS / "roads.json").read_text())["roads"] if given.roads else [None]
+    counts, unfit = Counter[str](), 0
+    for number, road in enumerate(roads, 1):
+        for entry in catalogue:
+            name = entry["name"]
+            fits = road is None or name not in road["fits"]["all but"]
+            if not fnmatchcase(name, given.only) or (given.road and number != given.road):
+                continue
+            unfit += not fits
+            for seed in range(1, given.seeds + 1) if fits else ():
+                outcome, said = _outcome(referee, entry, road, seed, given.verbose)
+                counts[outcome] += 1
+                print(f"{outcome:<8} {name:<42} {road['plan'] if road else ''}  {said}", flush=True)
+    print(f"{dict(counts)}, and {unfit} pairs that do not fit by the list of roads")
+
+
+def _outcome(
+    referee: Any, entry: dict[str, Any], road: dict[str, Any] | None, seed: int, verbose: bool
+) -> tuple[str, str]:
+    words = iter(shlex.split(road.get("options", "")) if road else ())
+    more = {key[2:].replace("-", "_"): float(value) for key, value in zip(words, words, strict=True)}
+    more |= {"bank": more["bank"] / 100} if "bank" in more else {}
+    try:
+        run = driven(entry["name"], road["plan"] if road else "", seed, **more)
+    except (UsageError, DesignError) as error:
+        return "refused", str(error)
+    if run.outcome in ("INVALID", "ERROR") or run.drive is None:
+        return "refused" if run.description.startswith("refused") else "error", run.description
+    wrong, measured = judged(referee, run, anywhere(entry["truth"]) if road else entry["truth"])
+    more_said = json.dumps(referee.plain(measured), default=str) if verbose else ""
+    if not wrong:
+        return "found", more_said
+    faults = {key: value for key, value in measured["faults"].items() if value and key in wrong}
+    said = {key: measured.get("outcome", {}).get(key.partition(".")[2]) for key in wrong if "outcome" in key}
+    return "missed", f"{wrong} {faults or ''} {said or ''} {run.description} {more_said}"
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,173 @@
+"""Reads the catalogue of scenarios: scenes of regulations and typologies, with parameters.
+
+``r157:cut_in slower=30`` names a scenario with another value of one parameter; ``*`` stands for any letters
+of a name, and a comma divides several. The scenarios are data, in ``scenarios.toml``."""
+
+import re
+import tomllib
+from collections.abc import Iterator, Mapping
+from difflib import get_close_matches
+from fnmatch import fnmatchcase
+from functools import cache
+from itertools import product
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
+
+from roadgpt.brief.plan import read_scene
+from roadgpt.brief.scene import Scene
+from roadgpt.errors import BriefError, UsageError
+from roadgpt.reading import read_text
+
+Grid = Literal["nominal", "standard"]
+Value = float | str
+LANE_WIDTH = 3.5  # m, of the nominal roads
+TABLE: dict[str, Any] = tomllib.loads(read_text(Path(__file__).with_name("scenarios.toml")))
+WORDS: Mapping[str, str] = TABLE.pop("words")
+ROADS: Mapping[str, str] = TABLE.pop("roads")
+
+
+class Scenario(NamedTuple):
+    """A scenario of the catalogue, with values of its parameters."""
+
+    name: str
+    says: str
+    source: str
+    road: str
+    """The name of its nominal road in ``ROADS``, as a template like ``scene``."""
+    scene: str
+    """A scene as in plans, with what is computed of the parameters in braces."""
+    parameters: Mapping[str, tuple[Value, str]]
+    """The nominal value of each, with its unit or what it means."""
+    grid: tuple[Mapping[str, tuple[Value, ...]], ...]
+    """The standard grid: blocks, each a product of its lists."""
+    values: Mapping[str, Value]
+
+    def __str__(self) -> str:
+        given = {name: value for name, value in self.values.items() if value != self.parameters[name][0]}
+        return " ".join([self.name, *(f"{name}={_text(value)}" for name, value in given.items())])
+
+    @property
+    def scene_text(self) -> str:
+        """The scene, as in a plan."""
+        return self._filled(self.scene)
+
+    @property
+    def plan(self) -> str:
+        """The plan of the nominal road."""
+        return ROADS[self._filled(self.road).replace("_", " ")]
+
+    def onto(self, other: Scene) -> Scene:
+        """Returns the scene together with another one, such as its traffic and weather. Raises UsageError if
+        the values are no scene, or both say something else of one thing."""
+        try:
+            own = read_scene(self.scene_text)
+        except (BriefError, ZeroDivisionError) as error:
+            said = "a number is divided by 0" if isinstance(error, ZeroDivisionError) else str(error)
+            raise UsageError(f"the scenario '{self}' is not possible: {said}") from error
+        usual, fields = Scene(), dict(own)
+        for name, value in other:
+            if fields[name] not in (value, getattr(usual, name)) and value != getattr(usual, name):
+                raise UsageError(
+                    f"the scenario '{self}' and the other scene both say the {name} of the scene, and "
+                    "contradict each other; leave one of them out"
+                )
+            fields[name] = value if fields[name] == getattr(usual, name) else fields[name]
+        return Scene(**fields)
+
+    def points(self, grid: Grid, with_road: bool) -> "Iterator[Scenario]":
+        """Yields the scenario itself, or with the values of all points of its standard grid that this one
+        leaves at the nominal ones; without ``with_road`` none that differ only in their nominal road."""
+        fixed = {name for name, value in self.values.items() if value != self.parameters[name][0]}
+        seen = set[str]()
+        for block in self.grid if grid == "standard" else ({},):
+            lists = {name: each for name, each in block.items() if name not in fixed}
+            lists = {name: each for name, each in lists.items() if with_road or name != "road"}
+            for values in product(*lists.values()):
+                point = self._replace(values={**self.values, **dict(zip(lists, values, strict=True))})
+                if str(point) not in seen:
+                    seen.add(str(point))
+                    yield point
+
+    def _filled(self, template: str) -> str:
+        names = {"max": max, "abs": abs, "__builtins__": {}, **self.values}
+        words = {name: WORDS.get(str(value), value) for name, value in names.items()}
+
+        def computed(found: re.Match[str]) -> str:
+            return _text(eval(found[1], words))  # noqa: S307 - our own formulas, of checked values
+
+        return re.sub(r"\{(.+?)\}", computed, template)
+
+    def with_value(self, name: str, text: str) -> "Scenario":
+        """Returns the scenario with another value of a parameter."""
+        if name not in self.parameters:
+            known = f"its parameters are {', '.join(self.parameters)}"
+            raise UsageError(
+                f"the scenario {self.name} has no '{name}'; {_nearest(name, self.parameters) or known}"
+            )
+        usual, unit = self.parameters[name]
+        if isinstance(usual, str):
+            known = {usual: None, **dict.fromkeys(v for block in self.grid for v in block.get(name, ()))}
+            if text not in known:
+                raise UsageError(f"'{name}' of {self.name} is {' or '.join(known)}, not '{text[:40]}'")
+            return self._replace(values={**self.values, name: text})
+        try:
+            return self._replace(values={**self.values, name: float(text)})
+        except ValueError:
+            raise UsageError(f"'{name}' of {self.name} is a number, {unit}; not '{text[:40]}'") from None
+
+
+def _text(value: Value) -> str:
+    return value if isinstance(value, str) else f"{round(value, 4) + 0.0:.8g}"
+
+
+def _nearest(name: str, known: Mapping[str, Any]) -> str:
+    near = get_close_matches(name, known, 1, 0.4)
+    return f"did you mean '{near[0]}'?" if near else ""
+
+
+@cache
+def scenarios() -> Mapping[str, Scenario]:
+    """Returns all scenarios with their nominal values, by name."""
+    made = {}
+    for name, row in TABLE.items():
+        parameters = {each: (usual, said) for each, (usual, said) in row["parameters"].items()}
+        values = {each: usual for each, (usual, _) in parameters.items()}
+        made[name] = Scenario(
+            name, **{**row, "parameters": parameters, "grid": tuple(row["grid"])}, values=values
+        )
+    return made
+
+
+def chosen(text: str) -> list[Scenario]:
+    """Returns the scenarios that a text names, such as "ncap:*, r157:cut_in slower=30". Raises UsageError if
+    there is no such scenario or parameter, or a value is not possible."""
+    found: dict[str, Scenario] = {}
+    for part in filter(None, map(str.strip, text.split(","))):
+        name, *given = part.split()
+        named = [each for each in scenarios().values() if fnmatchcase(each.name, name)]
+        if not named:
+            near = _nearest(name, scenarios()) or _nearest(
+                name, {each.partition(":")[2]: 0 for each in scenarios()}
+            )
+            raise UsageError(f"there is no scenario '{name[:40]}'; {near or 'roadgpt scenarios lists them'}")
+        for each in named:
+            for word in given:
+                key, equals, value = word.partition("=")
+                if not equals:
+                    raise UsageError(
+                        f"'{word[:40]}' is no parameter of {each.name}; write for example ego=40"
+                    )
+                each = each.with_value(key, value)
+            each.onto(Scene())
+            found[str(each)] = each
+    if not found:
+        raise UsageError("no scenario is named; roadgpt scenarios lists them")
+    return [*found.values()]
+
+
+def scenario(text: str) -> Scenario:
+    """Returns the one scenario that a text names."""
+    found = chosen(text)
+    if len(found) > 1:
+        raise UsageError(f"'{text[:40]}' names {len(found)} scenarios; name one, or test them in a campaign")
+    return found[0]

@@ -1,0 +1,289 @@
+"""The mover ``script``: what actors of scenes do, against formulas and against shapes of another library."""
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from shapely import LineString, Point, Polygon
+
+from roadgpt.errors import UsageError
+from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.traffic import STEP, Actor, TestedCar, begin
+from roadgpt.traffic.actor import Size, corners
+
+TestedCar.__test__ = False
+BOX = Size(4.9, 1.86, 1.4)
+WORLD = World.model_validate({"lanes": "2+2", "lane_width": 3.5, "map_size": 2000})
+STRAIGHT = build(
+    Design(
+        starting_point=(10, 400, 0),
+        theta=0,
+        segments=tuple(Segment(distance=100, direction="straight", incline=0) for _ in range(9)),
+    )
+)
+CURVED = build(
+    Design(
+        starting_point=(300, 300, 0),
+        theta=20,
+        segments=(
+            Segment(distance=80, direction="straight", incline=3),
+            Segment(distance=180, direction="left", incline=0, turn_degrees=50),
+            Segment(distance=180, direction="right", incline=-4, turn_degrees=-60),
+            Segment(distance=200, direction="straight", incline=0),
+        ),
+    )
+)
+Speed = Callable[[float], float]
+
+
+class Shown(NamedTuple):
+    """What was seen of a drive: a row x, y, heading, speed and metres for each sample of the tested car."""
+
+    car: np.ndarray
+    actors: tuple[Actor, ...]
+    states: np.ndarray
+    path: LineString
+
+    def along(self, who: int) -> np.ndarray:
+        """How far each sample of an actor is along the tested car's lane."""
+        places = self.states[:, who, :2]
+        return np.array(
+            [self.path.project(Point(*each)) if each[0] == each[0] else np.nan for each in places]
+        )
+
+    def left(self, who: int) -> np.ndarray:
+        """How far each sample of an actor is to the left of the tested car's lane's middle."""
+        out = []
+        for s, (x, y) in zip(self.along(who), self.states[:, who, :2], strict=True):
+            a, b = (self.path.interpolate(s + d) for d in (-0.05, 0.05)) if s == s else (Point(0, 0),) * 2
+            out.append(((b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)) / max(a.distance(b), 1e-9))
+        return np.where(np.isnan(self.states[:, who, 0]), np.nan, out)
+
+    def gap(self, who: int) -> np.ndarray:
+        apart = np.abs(self.along(who) - self.car[:, 4])
+        return apart - (self.actors[who].size.length + BOX.length) / 2
+
+
+def show(
+    scene: str, road: Road = STRAIGHT, lasts: float = 20.0, seed: int = 1, speed: Speed | None = None,
+    world: World = WORLD,
+) -> Shown:  # fmt: skip
+    """Drives a box along the middle of the tested car's lane, at its first speed or as ``speed`` says."""
+    world = world.changed(scene=scene)
+    traffic = begin(road, world, seed)
+    assert traffic is not None
+    s = np.linspace(0.0, road.length, int(road.length * 20))
+    xyz = road.at(s, world.profile_of(road).middle(s))
+    metres = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(xyz[:, :2], axis=0).T))])
+    own, rows = 2.5, []
+    for n in range(round(lasts / STEP) + 1):
+        v = world.first_speed if speed is None else speed(n * STEP)
+        x, y, station = (np.interp(own, metres, column) for column in (*xyz.T[:2], s))
+        heading = float(road.heading(station))
+        rows.append((x, y, heading, v, own))
+        traffic.advance(TestedCar(x, y, heading, v, float(station), 0.0, BOX.length, BOX.width))
+        own += v * STEP if speed is None else (speed(n * STEP) + speed((n + 1) * STEP)) / 2 * STEP
+    tracks = traffic.tracks()
+    return Shown(np.array(rows), tracks.actors, tracks.states[: len(rows)], LineString(xyz[:, :2]))
+
+
+@pytest.mark.parametrize("road", [STRAIGHT, CURVED])
+def test_a_leader_keeps_its_headway_and_brakes_by_the_formula(road: Road) -> None:
+    seen = show("ego v=50; car ahead thw=1 v=50: brake 4 to=2 time=3", road, 10.0)
+    v, low, time = 50 / 3.6, 2 / 3.6, STEP * np.arange(101)
+    braked = np.clip(time - 3.0, 0.0, (v - low) / 4.0)
+    speed = v - 4.0 * braked
+    way = (
+        v * np.minimum(time, 3.0) + v * braked - 2.0 * braked**2 + low * np.clip(time - 3.0 - braked, 0, None)
+    )
+    np.testing.assert_allclose(seen.states[:, 0, 4], speed, atol=2e-3)
+    np.testing.assert_allclose(seen.along(0) - seen.along(0)[0], way, atol=0.05)
+    assert seen.gap(0)[0] == pytest.approx(v, abs=0.02)
+    np.testing.assert_allclose(seen.left(0), 0.0, atol=0.02)
+
+
+@pytest.mark.parametrize("road", [STRAIGHT, CURVED])
+@pytest.mark.parametrize(
+    ("who", "kmh", "side", "impact"),
+    [
+        ("adult", 5, "right", 25),
+        ("adult", 8, "left", 50),
+        ("bicycle", 15, "right", 50),
+        ("child", 5, "left", 75),
+    ],
+)
+@pytest.mark.parametrize("ego", [20, 50, 80])
+def test_who_crosses_is_hit_where_the_scene_says(
+    road: Road, who: str, kmh: float, side: str, impact: float, ego: float
+) -> None:
+    seen = show(f"ego v={ego}; {who} crossing {side} v={kmh} away=8 impact={impact}", road)
+    for n in range(len(seen.car) - 1):
+        for share in np.linspace(0.0, 1.0, 41)[:-1]:
+            car = seen.car[n] + share * (seen.car[n + 1] - seen.car[n])
+            other = seen.states[n, 0] + share * (seen.states[n + 1, 0] - seen.states[n, 0])
+            if np.hypot(*(car[:2] - other[:2])) > 6.0:
+                continue
+            mine = Polygon(corners(np.array([car[0], car[1], 0.0, car[2]]), BOX))
+            if mine.intersects(Polygon(corners(other, seen.actors[0].size))):
+                cos, sin = math.cos(car[2]), math.sin(car[2])
+                left = -(other[0] - car[0]) * sin + (other[1] - car[1]) * cos
+                from_side = BOX.width / 2 + (left if side == "right" else -left)
+                assert from_side == pytest.approx(impact / 100 * BOX.width, abs=0.05)
+                assert other[4] * 3.6 == pytest.approx(kmh, abs=0.5)
+                return
+    pytest.fail("nobody was hit")
+
+
+def test_a_cut_in_begins_at_its_gap_and_is_as_fast_sideways_as_it_says() -> None:
+    seen = show("ego v=60; car lane left dv=-20: cut_in lat=2 gap=30")
+    aside, rate = seen.left(0), np.diff(seen.left(0)) / STEP
+    moving = np.flatnonzero(np.abs(rate) > 1e-2)
+    assert seen.gap(0)[moving[0]] == pytest.approx(30.0, abs=0.6)  # within a sample of its begin
+    assert rate.min() == pytest.approx(-2.0, abs=0.02)
+    assert rate.max() <= 1e-2
+    assert (aside[0], aside[-1]) == (pytest.approx(3.5, abs=1e-3), pytest.approx(0.0, abs=1e-3))
+    # half a cosine wave of this height with this greatest slope lasts pi / 2 * 3.5 / 2 s
+    assert len(moving) * STEP == pytest.approx(math.pi / 2 * 3.5 / 2, abs=0.2)
+    ahead = np.diff(seen.along(0)) / STEP
+    np.testing.assert_allclose(ahead, 40 / 3.6, atol=0.02)
+
+
+def test_before_its_trigger_one_matches_a_tested_car_that_changes_its_speed() -> None:
+    def slower(time: float) -> float:
+        return 14.0 - min(time, 3.0)
+
+    head_on = show("ego v=50; car oncoming v=50 gap=250 impact=50", speed=slower, lasts=12.0)
+    planned = 2.5 + BOX.length / 2 + 125.0  # both are equally fast at first, so they meet half way
+    n = int(np.flatnonzero(head_on.gap(0) < 0.0)[0])
+    before, after = head_on.gap(0)[n - 1 : n + 1]
+    front = np.interp(0.0, [after, before], head_on.car[[n, n - 1], 4]) + BOX.length / 2
+    assert front == pytest.approx(planned, abs=0.5)
+    assert head_on.states[n, 0, 4] == pytest.approx(50 / 3.6, abs=0.3)
+    cut = show("ego v=50; car lane left v=40 : cut_in gap=15", speed=slower)
+    begins = int(np.flatnonzero(np.abs(np.diff(cut.left(0))) > 1e-3)[0])
+    assert cut.gap(0)[begins] == pytest.approx(15.0, abs=0.7)
+
+
+SCENES = (
+    "car ahead gap=20..40 v=30..60: brake 3..6 to=10, speed to=50 accel=1..3, stop, keep",
+    "truck ahead: swerve, swerve; bus behind: follow; motorcycle behind: overtake",
+    "van lane left: cut_in accel=-2 for=3; car x2 behind: change_lane left, drift; car ahead: cut_out",
+    "car lane left dv=-10..10: open_gap, stop 4 for=1, reverse; cones x3 beside right; animal crossing left",
+    "car oncoming: wrong_way; van oncoming: drift; car oncoming gap=400: overtake; adult x2 crossing right",
+    "car parked right: pull_out; bus beside right: pull_out; car ahead: wrong_way; car ahead gap=90: reverse",
+)
+
+
+@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("road", [STRAIGHT, CURVED])
+def test_motion_is_possible_and_headings_follow_it(scene: str, road: Road) -> None:
+    seen = show(scene, road, 18.0, speed=lambda time: 15.0 - 3.0 * math.sin(time / 2))
+    again = show(scene, road, 18.0, speed=lambda time: 15.0 - 3.0 * math.sin(time / 2))
+    assert seen.states.tobytes() == again.states.tobytes()
+    for n, actor in enumerate(seen.actors):
+        there = np.flatnonzero(~np.isnan(seen.states[:, n, 0]))
+        assert len(there) > 20, actor.name
+        assert np.array_equal(there, np.arange(there[0], there[-1] + 1)), actor.name
+        rows = seen.states[there, n]
+        velocity = np.diff(rows[:, :2], axis=0) / STEP
+        assert np.abs(np.diff(velocity, axis=0)).max() / STEP < 8.0, actor.name
+        speed = np.hypot(*velocity.T)
+        middle = (rows[1:, 4] + rows[:-1, 4]) / 2
+        steady = np.sign(rows[1:, 4]) == np.sign(rows[:-1, 4])
+        np.testing.assert_allclose(speed[steady], np.abs(middle)[steady], atol=0.25)
+        moves = speed > 1.0
+        course = np.arctan2(velocity[:, 1], velocity[:, 0]) + np.pi * (middle < 0)
+        off = (rows[1:, 3] + rows[:-1, 3]) / 2 - course
+        off = (off + np.pi) % (2 * np.pi) - np.pi
+        assert np.abs(off[moves]).max(initial=0.0) < 0.06, actor.name
+
+
+def test_what_is_drawn_depends_on_the_seed_alone() -> None:
+    scene = "car x1..4 ahead gap=20..60 v=30..60; oncoming x2 v=40..60"
+    first = [show(scene, lasts=1.0, seed=seed) for seed in range(6)]
+    assert len({len(each.actors) for each in first}) > 1
+    speeds = [each.states[0, 0, 4] for each in first]
+    assert len(set(speeds)) == len(speeds)
+    assert all(30 / 3.6 <= each <= 60 / 3.6 for each in speeds)
+
+
+def test_several_alike_are_one_behind_another() -> None:
+    ahead = show("ego v=50; car x3 ahead gap=30 v=36; cones x3 ahead gap=100", lasts=1.0)
+    places = [ahead.along(n)[0] for n in range(6)]
+    np.testing.assert_allclose(np.diff(places[:3]), 4.7 + 2.0 + 1.5 * 10.0, atol=0.01)
+    np.testing.assert_allclose(np.diff(places[3:]), 0.4 + 2.0, atol=0.01)
+
+
+def test_events_of_others_begin_actions() -> None:
+    seen = show(
+        "car ahead v=60 gap=40: brake 5 to=20 time=3.25; van lane left v=60 gap=30: brake 4 with car 1 brake;"
+        "truck lane left v=60 gap=60: brake 4 after car 1 brake"
+    )
+    begins = [int(np.flatnonzero(np.diff(seen.states[:, n, 4]) < -1e-3)[0]) for n in range(3)]
+    lasts = (60 - 20) / 3.6 / 5
+    assert begins == [32, 32, int((3.25 + lasts) / STEP)]
+    # the begin lies within the step: the speeds one sample later show it
+    for n, (start, decel) in enumerate([(3.25, 5), (3.25, 4), (3.25 + lasts, 4)]):
+        after = begins[n] + 1
+        braked = decel * (after * STEP - start)
+        assert seen.states[after, n, 4] == pytest.approx(60 / 3.6 - braked, abs=0.02)
+
+
+@pytest.mark.parametrize("where", ["behind", "lane left"])
+def test_who_overtakes_is_first_behind_and_then_before(where: str) -> None:
+    seen = show(f"ego v=50; car {where}: overtake", lasts=25.0)
+    apart = seen.along(0) - seen.car[:, 4]
+    there = ~np.isnan(apart)
+    length = (4.7 + BOX.length) / 2
+    assert apart[there][0] < -length
+    assert apart[there][-1] > length
+    beside = there & (np.abs(np.nan_to_num(apart)) < length)
+    assert beside.any()
+    assert np.abs(seen.left(0)[beside]).min() > (1.8 + BOX.width) / 2
+    assert seen.left(0)[there][-1] == pytest.approx(0.0 if where == "behind" else 3.5, abs=0.01)
+
+
+def test_places_across_the_lane() -> None:
+    seen = show(
+        "car ahead gap=30 overlap=40; truck ahead gap=60 impact=25; van lane left t=-0.4; "
+        "adult ahead v=0 gap=110 t=-1.5; car oncoming impact=75",
+        lasts=0.5,
+    )
+    own, left = BOX.width, [seen.left(n)[0] for n in range(5)]
+    covered = min(own / 2, left[0] + 0.9) + own / 2
+    assert left[0] < 0
+    assert covered / own == pytest.approx(0.4, abs=0.01)
+    assert left[1] == pytest.approx(-own / 4, abs=0.01)
+    assert left[2] == pytest.approx(3.5 - 0.4, abs=0.01)
+    assert left[3] == pytest.approx(-1.5, abs=0.01)
+    assert left[4] == pytest.approx(own / 4, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("scene", "said"),
+    [
+        ("truck ahead: brake 6 after turn 3", "names turn 3, but the road has 2 turns"),
+        ("car ahead after junction 1", "names junction 1, but the road has no junction"),
+        ("cones ahead gap=900", "would stand at"),
+        ("car lane right: keep", "no second lane of the same direction on the right"),
+        ("car lane left gap=-150: cut_in", "before the begin of the road"),
+        ("car lane left gap=20 v=60: cut_in gap=40", "never comes to where"),
+        ("adult crossing right s=30: cross", "cannot be where it meets"),
+        ("car junction left", "passes no junction"),
+        ("car ramp: merge", "passes no ramp"),
+        ("adult crosswalk: cross", "passes no crosswalk"),
+    ],
+)
+def test_what_cannot_be_is_said_in_one_sentence(scene: str, said: str) -> None:
+    with pytest.raises(UsageError, match=said):
+        begin(CURVED, WORLD.changed(scene=scene), 1)
+
+
+def test_who_comes_from_behind_appears_when_its_place_is_on_the_road() -> None:
+    seen = show("ego v=50; bus behind thw=1 v=50", lasts=8.0)
+    first = int(np.flatnonzero(~np.isnan(seen.states[:, 0, 0]))[0])
+    assert first > 0
+    assert 6.0 - 0.02 <= seen.along(0)[first] < 6.0 + 50 / 3.6 * STEP  # half a bus is 6 m
+    np.testing.assert_allclose(seen.gap(0)[first:], 50 / 3.6, atol=0.03)
