@@ -19,7 +19,6 @@ from roadgpt.brief.scene import (
     LIGHTS,
     NUMBERS,
     SPOTS,
-    UNBUILT,
     WEATHER,
     Action,
     ActorKind,
@@ -33,7 +32,6 @@ from roadgpt.brief.scene import (
     What,
     Where,
     scene_text,
-    unbuilt,
 )
 from roadgpt.brief.sentence import sentence
 from roadgpt.errors import BriefError
@@ -253,12 +251,6 @@ def test_the_page_has_every_word_and_every_bound() -> None:
     assert starts == {
         what: NUMBERS[each.numbers[0]].key if each.numbers else "" for what, each in DOINGS.items()
     }
-
-
-@given(SCENES)
-def test_what_no_drive_has_yet_is_named_and_flow_and_weather_are_not(scene: Scene) -> None:
-    assert len(unbuilt(scene)) == sum(bool(getattr(scene, name)) for name in UNBUILT)
-    assert not unbuilt(scene)
 
 
 def test_rain_wets_the_road_and_a_surface_goes_before_it() -> None:

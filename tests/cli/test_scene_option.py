@@ -27,15 +27,13 @@ def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("given", [[f"{PLAN} && {HARD}"], [PLAN, "--scene", HARD]])
-@pytest.mark.parametrize("command", [["run"], ["campaign", "-n", "1"]])
-def test_what_no_drive_has_yet_is_understood_and_refused_by_name(
-    command: list[str], given: list[str]
-) -> None:
-    result = roadgpt(*command, "--plan", "--out", "out", *given)
-    assert result.exit_code == 2
-    assert SAID in result.stderr
-    assert "no drive has single actors and fog yet" in result.stderr
-    assert not list(Path().glob("out/runs/*"))
+def test_others_and_weather_are_told_and_driven(given: list[str]) -> None:
+    result = roadgpt("run", "--plan", "--no-plot", "--out", "out", *given)
+    assert result.exit_code == 0, result.output
+    assert SAID in result.output.replace("\n", " ")
+    run = read_run(Path("out/runs/0001"))
+    assert run.world.scene == read_scene(HARD)
+    assert run.drive.others.actors[0].kind == "truck"
 
 
 def test_a_scene_is_in_the_run_and_in_the_command_that_repeats_it() -> None:
@@ -119,3 +117,9 @@ def test_settings_and_plans_of_campaigns_have_scenes() -> None:
 def test_a_scene_beside_words_is_told() -> None:
     result = roadgpt("run", "--plan", PLAN, "--scene", "light", "--no-drive", "--no-plot", "--out", "out")
     assert "note: on the road: light traffic (5 vehicles for each km of a lane)" in result.output
+
+
+def test_rain_beside_words_sets_the_friction_and_says_so() -> None:
+    result = roadgpt("run", "--plan", PLAN, "--scene", "rain 5", "--no-drive", "--no-plot", "--out", "out")
+    assert "note: on the road: rain of 5 mm/h; friction 0.6" in result.output
+    assert read_run(Path("out/runs/0001")).world.site.friction == 0.6

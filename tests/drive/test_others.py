@@ -139,6 +139,34 @@ def test_the_driver_sees_who_is_within_200_m_and_the_file_holds_everybody(
     assert again.to_bytes() == drive.to_bytes()
 
 
+@pytest.mark.parametrize(
+    ("scene", "lit", "unlit"),
+    [("fog 30", 30, 30), ("night", 300, 50), ("fog 20..40", 0, 0), ("low_sun", 1e9, 1e9)],
+)
+def test_weather_hides_who_is_beyond_the_visual_range_and_changes_nothing_else(
+    crash: tuple[Drive, Straight, Tracks], scene: str, lit: float, unlit: float
+) -> None:
+    clear, before, others = crash
+    driver = Straight()
+    drive = simulate(ROAD, WORLD.changed(scene=scene), driver, 1, replay=others)
+    assert drive.to_bytes() == clear.to_bytes()  # nobody looks, and contact is contact
+    if ".." in scene:  # drawn by the seed, and told to drivers
+        lit = unlit = driver.views[0].world.scene.fog.lo
+        assert 20 < lit < 40
+        assert lit == driver.views[0].world.scene.fog.hi
+    for view, whole in zip(driver.views[::20], before.views[::20], strict=True):
+        middle = drive.car.ahead * np.array([np.cos(view.heading), np.sin(view.heading)]) + [view.x, view.y]
+        near = [
+            other for other in whole.others
+            if np.hypot(*(middle - [other.x, other.y])) - other.length / 2
+            <= (lit if other.kind in ("truck", "bus") else unlit)
+        ]  # fmt: skip
+        assert list(view.others) == near
+    assert (
+        min(len(view.others) for view in driver.views) < min(len(view.others) for view in before.views)
+    ) == (scene != "low_sun")
+
+
 def test_nobody_leaves_no_trace(crash: tuple[Drive, Straight, Tracks]) -> None:
     alone = replace(crash[0], others=None)
     with np.load(io.BytesIO(alone.to_bytes())) as archive:

@@ -411,12 +411,3 @@ def _parts(scene: Scene) -> Iterator[str]:
     if scene.surface:
         yield SURFACES[scene.surface].said
     yield from map(str, scene.slippery)
-
-
-UNBUILT: dict[str, str] = {}
-"""The parts of a scene that are read and told, but that no drive has yet."""
-
-
-def unbuilt(scene: Scene) -> tuple[str, ...]:
-    """Returns the names of what a scene asks for and no drive has yet."""
-    return tuple(name for field, name in UNBUILT.items() if getattr(scene, field))

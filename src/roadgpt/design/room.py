@@ -74,7 +74,8 @@ def scene_remark(brief: Brief, found: World) -> str:
     if brief.scene == found.scene:
         return ""
     if brief.scene == Scene():
-        return f"on the road: {scene_text(found.scene)}"
+        friction = f"; friction {found.site.friction:g}" if found.scene.surfaces else ""
+        return f"on the road: {scene_text(found.scene)}{friction}"
     return f"the words have a scene, but --scene '{scene_plan(found.scene)}' is set and used"
 
 

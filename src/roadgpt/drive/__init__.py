@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from roadgpt import plugins
-from roadgpt.brief.scene import Scene, scene_text, unbuilt
+from roadgpt.brief.scene import Scene
 from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended, Handover, check_motion
 from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.view import CameraSpec, Command, JunctionAhead, LightAhead, Other, View
@@ -171,11 +171,6 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None, r
     is_simple = getattr(simulator, "single_roads_only", False)
     if is_simple and road is not None and only_road(road, world) is None:
         raise UsageError("this simulator cannot build junctions yet; drive in the simulator mujoco")
-    if missing := unbuilt(world.scene):
-        raise UsageError(
-            f"the scene is understood as '{scene_text(world.scene)}', but no drive has "
-            f"{' and '.join(missing)} yet; leave that out, or do not drive (--no-drive)"
-        )
     values, usual = world.values(), World().values()
     ignored = getattr(simulator, "ignores", ())
     profile = None if road is None else road.profile
