@@ -117,9 +117,11 @@ class Scenario(NamedTuple):
             )
         usual, unit = self.parameters[name]
         if isinstance(usual, str):
-            known = {usual: None, **dict.fromkeys(v for block in self.grid for v in block.get(name, ()))}
-            if text not in known:
-                raise UsageError(f"'{name}' of {self.name} is {' or '.join(known)}, not '{text[:40]}'")
+            words = dict.fromkeys(
+                [usual, *(str(each) for block in self.grid for each in block.get(name, ()))]
+            )
+            if text not in words:
+                raise UsageError(f"'{name}' of {self.name} is {' or '.join(words)}, not '{text[:40]}'")
             return self._replace(values={**self.values, name: text})
         try:
             return self._replace(values={**self.values, name: float(text)})

@@ -87,7 +87,8 @@ def _until_stop(scene: Scene, speed: float) -> float:
 
 def role_marks(role: Role) -> Iterator[float]:
     """Yields how far along the road somebody is named to be."""
-    yield from (_most(each.station) for each in (role, *role.actions))
+    yield _most(role.station)
+    yield from (_most(each.station) for each in role.actions)
     if role.where == "oncoming":
         yield _most(role.gap)
 

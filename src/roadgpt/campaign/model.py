@@ -8,7 +8,7 @@ from pydantic import Field
 
 from roadgpt.brief.model import Brief, Frozen
 from roadgpt.brief.plan import read_plan
-from roadgpt.brief.scenarios import Scenario, chosen, scenario
+from roadgpt.brief.scenarios import LANE_WIDTH, Scenario, chosen, scenario
 from roadgpt.road import Design, World
 from roadgpt.run.model import Outcome, Request
 from roadgpt.verdict.verdict import Cause, Side
@@ -169,8 +169,9 @@ class Cell:
         one = scenario(proposal.origin)
         brief = self.brief if self.request.words else read_plan(one.plan)
         setup = self.request.setup.model_copy(update={"scenario": str(one)})
+        nominal = {} if self.request.words else {"lane_width": LANE_WIDTH}
         usual, values = World().values(), self.request.world.values().items()  # a store names all values
-        world = World().changed(**{name: value for name, value in values if value != usual[name]})
+        world = World().changed(**nominal | {name: value for name, value in values if value != usual[name]})
         world = world_for(brief, setup.staged(world))
         made = {"words": self.request.words or one.plan, "world": world, "setup": setup}
         return replace(self, request=self.request.model_copy(update=made), brief=brief)

@@ -364,7 +364,7 @@ OF_DESIGN = {"words", "goal", "generator", "is_plan", "reader", "designer"}
 
 def _described(ctx: click.Context, text: str, rest: dict[str, Any]) -> "tuple[Plan, Set[str]]":
     """Returns the plan of a description or of given roads, and the fields of the World that were typed."""
-    from roadgpt.brief.scenarios import LANE_WIDTH, chosen
+    from roadgpt.brief.scenarios import chosen
     from roadgpt.campaign.model import WITH_GOAL, WITHOUT_GOAL, CellBudget
     from roadgpt.campaign.plan import Plan
 
@@ -377,7 +377,7 @@ def _described(ctx: click.Context, text: str, rest: dict[str, Any]) -> "tuple[Pl
                 f"--on tests roads that are there, and {what} is for roads that are designed; leave one of "
                 "them out"
             )
-    world, settings, tests = options.world_of(rest), dict[str, Any](), rest["tests"]
+    settings, tests = dict[str, Any](), rest["tests"]
     if rest["scenarios"]:
         if rest["goal"] or rest["on"] or rest["generator"] not in (None, WITHOUT_GOAL):
             raise UsageError(
@@ -387,8 +387,6 @@ def _described(ctx: click.Context, text: str, rest: dict[str, Any]) -> "tuple[Pl
         tests = tests or sum(
             1 for each in chosen(rest["scenarios"]) for _ in each.points(rest["grid"], not text)
         )
-        if not text and "lane_width" not in told:
-            world = world.changed(lane_width=LANE_WIDTH)
     rest["reader"] = options.reader_of(rest)
     rest["generator"] = rest["generator"] or (WITH_GOAL if rest["goal"] else WITHOUT_GOAL)
     lists = {f"{name}s": (rest[name],) for name in ("designer", "simulator", "generator", "seed")}
@@ -399,7 +397,7 @@ def _described(ctx: click.Context, text: str, rest: dict[str, Any]) -> "tuple[Pl
         budget=CellBudget(tests=tests, seconds=rest["seconds"]),
         settings=settings,
         drives=not rest["no_drive"],
-        world=world,
+        world=options.world_of(rest),
         chat=options.chat_of(rest, rest["reader"], rest["designer"]),
         **lists,
         **{name: rest[name] for name in names},
