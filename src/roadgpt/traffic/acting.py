@@ -43,6 +43,13 @@ def pull_of(kind: ActorKind, speed: float) -> float:
     return PULL[kind]
 
 
+def starts(kind: ActorKind, n: Mapping[str, float], usual: float) -> tuple[float, float]:
+    """Returns the speed in m/s that somebody comes to from rest, and the acceleration in m/s^2, by the
+    numbers of an action; ``usual`` is the speed of which they say nothing."""
+    goal = n.get("to", usual)
+    return goal, abs(n.get("accel", pull_of(kind, goal)))
+
+
 class Car(NamedTuple):
     """The tested car as it is seen from its lane: the station of its middle, its speed and how far it has
     come in metres and seconds, and its size."""
@@ -233,9 +240,8 @@ class Act:
         if self.begun:
             return before
         if self.meeting and self.waits:
-            goal = n.get("to", self.cruise)
-            pull = abs(n.get("accel", pull_of(self.kind, goal)))
-            return self._eta(car) - time_over(self.forward * (self.meeting.own - self.s), goal, pull)
+            way = self.forward * (self.meeting.own - self.s)
+            return self._eta(car) - time_over(way, *starts(self.kind, n, self.cruise))
         return self._eta(car) - LAST if self.meeting else ROLL - time
 
     def _until(self, n: Mapping[str, float], time: float, car: Car) -> float:

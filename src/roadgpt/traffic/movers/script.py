@@ -26,8 +26,8 @@ from roadgpt.traffic.acting import (
     Car,
     Deed,
     Meeting,
-    pull_of,
     reach,
+    starts,
     time_over,
 )
 from roadgpt.traffic.actor import SIZES, Actor, FloatArray, TestedCar, corners
@@ -51,6 +51,7 @@ ONCOMING = 40.0  # m between several alike that come towards the tested car
 EASY = 4.0  # m/s^2, with which the tested car can stop before who stands or is slow
 INTO = 1.0  # s of headway with which one turns in or merges ahead of the tested car
 NEAR = 10.0  # m before the meeting, where a vehicle waits at a junction
+PLACES = ("gap", "headway", "lead", "station")
 CROSSES: tuple[What, ...] = ("cross", "turn_in")
 
 
@@ -87,8 +88,10 @@ class Script:
             for copy in range(count):
                 rng = np.random.default_rng([stage.seed, number, copy])
                 one = _drawn(role, rng)
-                one = one.model_copy(update={"actions": tuple(_drawn(each, rng) for each in one.actions)})
-                self._cast.append((number, copy, one))
+                changed = {"actions": tuple(_drawn(each, rng) for each in one.actions)}
+                if copy:  # several alike are one behind another
+                    changed |= {field: getattr(self._cast[-1][2], field) for field in PLACES}
+                self._cast.append((number, copy, one.model_copy(update=changed)))
         first = self._station(min(START, stage.road.length / 2))
         self._place(Car(first, stage.world.first_speed, 0.0, *SIZES["car"][:2]))
         free = [act.way.points for act in self._acts if act.way is not self._way]
@@ -147,8 +150,7 @@ class Script:
         for number, copy, role in self._cast:
             same = [each for each in scene.actors[: number + 1] if each.kind == role.kind]
             name = (role.kind, str(len(same))) if copy == 0 else None
-            place = next(one for other, _, one in self._cast if other == number)
-            self._acts.append(_Placing(self, role, place, copy, ways, number).act(events, name))
+            self._acts.append(_Placing(self, role, number, copy, ways).act(events, name))
 
     def stretch(self, mark: Mark) -> tuple[float, float]:
         """Returns the first and the last station, along the tested car's lane, of a part of its route."""
@@ -176,21 +178,11 @@ class Script:
 class _Placing:
     """Where somebody of a scene is at first, and how it is made to meet the tested car."""
 
-    def __init__(
-        self, script: Script, role: Role, place: Role, copy: int, ways: dict[int, Way], number: int
-    ) -> None:
-        self.script, self.role, self.copy, self.car = script, role, copy, script._car
-        self.road, self.world = script._road, script._world
+    def __init__(self, script: Script, role: Role, number: int, copy: int, ways: dict[int, Way]) -> None:
+        self.script, self.role, self.number, self.copy, self.ways = script, role, number, copy, ways
+        self.road, self.world, self.car = script._road, script._world, script._car
         self.kind, self.where, self.side = role.kind, role.where, role.side
-        self.size, self.n = (
-            SIZES[role.kind],
-            _numbers(role)
-            | {
-                key: value
-                for key, value in _numbers(place).items()
-                if key in ("gap", "headway", "lead", "station")
-            },
-        )
+        self.size, self.n = SIZES[role.kind], _numbers(role)
         self.half = (self.size.length + self.car.length) / 2
         self.limit = self.world.limits.speed_limit
         self.deeds = [self._deed(action) for action in role.actions]
@@ -208,7 +200,6 @@ class _Placing:
         self.forward = 1
         if self.is_along and (self.where == "oncoming" or self.first == "wrong_way"):
             self.forward = -1
-        self.ways, self.number = ways, number
         self.kerb = self.world.profile_of(self.road).side
         self.cruise = self._cruise()
         self.stands = (
@@ -316,8 +307,7 @@ class _Placing:
         if self.number not in self.ways:
             role, cue = self.role, self.deeds[0].n if self.deeds else {}
             if self.crosses and "ttc" in cue and role.away is None:
-                goal = cue.get("to", self.cruise)
-                away = reach(cue["ttc"], 0.0, goal, abs(cue.get("accel", pull_of(self.kind, goal))))
+                away = reach(cue["ttc"], 0.0, *starts(self.kind, cue, self.cruise))
                 role = role.model_copy(update={"away": exactly(min(away, 60.0))})
             near = self.car.s + self.half + self.car.v * (ROLL + HEADWAY if self.crosses else LAST)
             if role.at:
@@ -326,9 +316,8 @@ class _Placing:
             near = self.n.get("station", near)
             way = self._way_from(role, near)
             if self.crosses and way.meets and "station" not in self.n and not role.at:
-                goal = cue.get("to", self.cruise)
-                pull = abs(cue.get("accel", pull_of(self.kind, goal)))
-                lasts = 1.0 + time_over(way.meets[0] + self.car.width / 2, goal, pull)
+                path = way.meets[0] + self.car.width / 2
+                lasts = 1.0 + time_over(path, *starts(self.kind, cue, self.cruise))
                 later = self.car.s + self.half + self.car.v * lasts
                 way = self._way_from(role, later) if later > near else way
             self.ways[self.number] = way
