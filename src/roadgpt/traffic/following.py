@@ -243,20 +243,30 @@ def _comes_before(
     if j != TESTED:
         if waits > PATIENCE and (before < 0 or line > v * v / (2.0 * EASY) + 5.0):
             return False
-        goes_first = waits > numbers[j, WAIT] or (waits == numbers[j, WAIT] and i < j)
-        if v < STANDING and waits > TURN and goes_first:
+        if v < STANDING and waits > TURN:  # if it has waited longer, it was asked before, and cannot go
             return False
     return bool((line + first) / max(v, 3.0) < leaves + MARGIN)
 
 
 @compiled
 def _has_room(
-    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, i: int, k: int, ahead: float,
-    entries: FloatArray, count: int,
+    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, present: int, i: int, k: int,
+    ahead: float, entries: FloatArray, count: int,
 ) -> bool:  # fmt: skip
     """Returns whether a vehicle finds room behind lane ``k`` of its way, so that it does not stand in the
-    junction."""
+    junction: also if all who are there, or have a grant to come there, queue before the next junction."""
     needed, far = numbers[i, LENGTH] + JAM, 0.0
+    there = ways[i, min(k + 1, whole[i, LAST] - 1)]
+    if lanes.onward_of[there] < lanes.onward_of[there + 1]:
+        queue = 0.0
+        for j in range(present):
+            if j != i and (whole[j, STATE] == DRIVES or whole[j, STATE] == STANDS_HIT):
+                last = min(max(whole[j, AT], whole[j, GRANTED] + 1), whole[j, LAST] - 1)
+                for q in range(whole[j, AT], last + 1):
+                    if ways[j, q] == there:
+                        queue += numbers[j, LENGTH] + JAM
+        if queue > 0.0 and queue + needed > lanes.stop[there]:
+            return False
     for q in range(k + 1, min(k + 3, whole[i, LAST])):
         for n in range(count):
             is_slow = entries[n, 0] == ways[i, q] and entries[n, 4] != i and entries[n, 3] < 3.0
@@ -308,7 +318,7 @@ def _may_enter(
                 return False
     if begin == end or lanes.leaves_ring[lane]:  # in a ring everybody moves up, or it would stand for ever
         return True
-    return _has_room(lanes, numbers, whole, ways, i, k, ahead, entries, count)
+    return _has_room(lanes, numbers, whole, ways, present, i, k, ahead, entries, count)
 
 
 @compiled
@@ -607,7 +617,8 @@ def step(
         whole: Whole numbers of the vehicles, changed in place.
         ways: The lanes of each vehicle's way, changed in place where it changes lanes.
         present: The number of rows in use.
-        states: Where the vehicles are, ``(present, 5)``; that of the tested car is in row TESTED.
+        states: Where the vehicles are, ``(present, 5)``, changed in place; that of the tested car is in row
+            TESTED.
         bodies: Others whom this step does not move: states, length and width, ``(m, 7)``.
         lights: GREEN, YELLOW or RED for each lane.
         entries: Room for the boxes in lanes: lane, first and last station, speed along it, and whose.
@@ -638,6 +649,7 @@ def step(
     for i in range(present):
         if i != TESTED and (whole[i, STATE] == DRIVES or whole[i, STATE] == STANDS_HIT):
             _move(lanes, numbers[i], whole[i], ways[i])
+    positions(lanes, numbers, whole, ways, present, states)
 
 
 @compiled
