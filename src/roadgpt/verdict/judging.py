@@ -91,7 +91,8 @@ def judge(
     missed stop is the failure. A tyre off the road is counted but fails no test.
 
     With others on the road, ``incidents`` also lists what ``roadgpt.verdict.among_others`` defines. Then the
-    earliest of all failures is the cause, and a contact within 3 s is told in the same sentence.
+    earliest of all failures is the cause, and a contact within 3 s is told in the same sentence. A collision
+    that no careful driver could have avoided, as ``roadgpt.verdict.avoidable`` defines it, is UNAVOIDABLE.
 
     ``known`` is the step that decides and the cause of failure, or None, if an earlier verdict has them;
     with others on the road they are found again.
@@ -130,11 +131,20 @@ def judge(
         description = _failed(road, drive, world, step, cause, side, contact)
     untold = [each for each in incidents or () if each is not contact or cause == "collision"]
     description += _counted(untold, cause) + _who_drove(drive.shares, handed_to)
+    avoidance = None
     s, x, y, time = (float(drive[name][step]) for name in ("s", "x", "y", "time"))
     if cause == "collision" and contact is not None:
+        from roadgpt.verdict.avoidable import avoidance_of
+
+        avoidance = avoidance_of(road, drive, world, contact)
+        description += f"; {avoidance.said}"
         s, (x, y), time = contact.at_s, contact.at_xy, contact.at_time
     return Verdict(
-        outcome="FAIL" if cause else "PASS",
+        outcome="PASS"
+        if cause is None
+        else "FAIL"
+        if avoidance is None or avoidance.is_avoidable
+        else "UNAVOIDABLE",
         cause=cause,
         description=description,
         sbft_description=SBFT[cause],
@@ -148,6 +158,7 @@ def judge(
         side=side,
         incidents=incidents,
         own_share=drive.shares.get(drive.driver),
+        avoided_by=avoidance and avoidance.by,
         handed_to=handed_to,
     )
 
