@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from roadgpt.road import Road
 
 SEEN = 200.0  # m, between the middles of the car and of another
+EYE = 1.2  # m, height of the driver's eye, which looks from the middle of the car
+SPACING = 5.0  # m between the places at which the height of the road is known
+BESIDE = 6.0  # m, within which the road lies under a line of sight
+FLAT = 0.002  # m, from the middle of three such places to the line between the others, twice: hides nobody
 _PLACES = [[*COLUMNS].index(name) for name in ("x", "y", "z", "heading", "speed", "s", "t")]
 
 
@@ -55,6 +59,67 @@ def look_around(
     return count, touches
 
 
+@compiled
+def in_sight(
+    states: FloatArray, sizes: FloatArray, eye: FloatArray, road: FloatArray, order: "NDArray[np.int64]",
+    seen: FloatArray, count: int, reach: float,
+) -> int:  # fmt: skip
+    """Keeps in ``order`` and ``seen``, as ``look_around`` wrote them, those whom the driver's eye at x, y, z
+    sees within ``reach`` metres, and returns how many they are.
+
+    Somebody is seen if a line from the eye leads to the top of its box, at its middle or a corner, past all
+    other boxes and, for the middle, above the points (n, 3) of the road. ``sizes`` (n, 3) are lengths, widths
+    and heights."""
+    near, kept = order[:count].copy(), 0
+    for place in range(count):
+        k = near[place]
+        ahead, aside = states[k, 0] - eye[0], states[k, 1] - eye[1]
+        far, top = math.hypot(ahead, aside), states[k, 2] + sizes[k, 2]
+        is_hidden = far > reach
+        for n in range(len(road)):
+            x, y = road[n, 0] - eye[0], road[n, 1] - eye[1]
+            u = (x * ahead + y * aside) / max(far * far, 1e-9)
+            if 0.0 < u < 1.0 and abs(y * ahead - x * aside) < BESIDE * far:
+                is_hidden = is_hidden or road[n, 2] > eye[2] + u * (top - eye[2])
+        c, s, is_seen = math.cos(states[k, 3]), math.sin(states[k, 3]), False
+        for point in range(5):
+            if is_hidden or is_seen:
+                break
+            along = (0.0, 1.0, 1.0, -1.0, -1.0)[point] * sizes[k, 0] / 2.0
+            across = (0.0, 1.0, -1.0, 1.0, -1.0)[point] * sizes[k, 1] / 2.0
+            x, y = states[k, 0] + along * c - across * s, states[k, 1] + along * s + across * c
+            is_seen = True
+            for m in near:
+                if m != k and _hides(states[m], sizes[m], eye, x, y, top):
+                    is_seen = False
+                    break
+        if is_seen:
+            order[kept] = k
+            seen[kept] = seen[place]
+            kept += 1
+    return kept
+
+
+@compiled
+def _hides(state: FloatArray, size: FloatArray, eye: FloatArray, x: float, y: float, z: float) -> bool:
+    """Returns whether a box lies between the eye and a point."""
+    c, s = math.cos(state[3]), math.sin(state[3])
+    dx, dy, there_x, there_y = eye[0] - state[0], eye[1] - state[1], x - eye[0], y - eye[1]
+    low, high = 0.0, 1.0
+    for axis in range(2):
+        here = dx * c + dy * s if axis == 0 else dy * c - dx * s
+        slope = there_x * c + there_y * s if axis == 0 else there_y * c - there_x * s
+        room = size[axis] / 2.0
+        if abs(slope) < 1e-9:
+            if abs(here) > room:
+                return False
+        else:
+            one, two = (-room - here) / slope, (room - here) / slope
+            low, high = max(low, min(one, two)), min(high, max(one, two))
+    one, two = eye[2] + low * (z - eye[2]), eye[2] + high * (z - eye[2])
+    return low < high and min(one, two) < state[2] + size[2] and max(one, two) > state[2]
+
+
 class Company:
     """The others on the road during one drive."""
 
@@ -63,9 +128,15 @@ class Company:
         passages = road.passages if traffic.lights is not None else ()
         lines = [(each.light_line, each.arrival) for each in passages]
         self._lines = [(line, end) for line, end in lines if line is not None]
+        self.has_lights = bool(self._lines)
+        """Whether traffic lights that run are on the way."""
         self._samples = 0
         self._looks: list[tuple[str, float, float]] = []
-        self._sizes, self._order, self._seen = np.empty((0, 2)), np.empty(0, np.int64), np.empty((0, 4))
+        self._sizes, self._order, self._seen = np.empty((0, 3)), np.empty(0, np.int64), np.empty((0, 4))
+        line = road.at(np.arange(0.0, road.length, SPACING))
+        is_hilly = np.abs(np.diff(line[:, 2], 2)).max(initial=0.0) > FLAT
+        self._heights = line if is_hilly else line[:0]
+        self._reach = SEEN
 
     def seen(self, row: FloatArray, time: float) -> tuple[Other, ...]:
         """Moves the others on to this time, tells the monitor whether the car touches one, and returns those
@@ -79,13 +150,16 @@ class Company:
             self._samples += 1
             new = self._traffic.actors[len(self._looks) :]
             self._looks += [(each.kind, *each.size[:2]) for each in new]
-            self._sizes = np.array([look[1:] for look in self._looks]).reshape(-1, 2)
+            self._sizes = np.vstack([self._sizes, *(each.size for each in new)])
             self._order, self._seen = np.empty(len(self._looks), np.int64), np.empty((len(self._looks), 4))
         states, looks = self._traffic.at(time), self._looks
         car = np.array([x, y, z - box.height, heading, box.length, box.width])
         count, touches = look_around(states, self._sizes, car, self._order, self._seen)
         if touches:
             self._monitor.touch(time)
+        eye, here = np.array([x, y, z - box.height + EYE]), int(s / SPACING)
+        road = self._heights[max(here - int(self._reach / SPACING), 0) : here + int(self._reach / SPACING)]
+        count = in_sight(states, self._sizes, eye, road, self._order, self._seen, count, self._reach)
         near = zip(self._order[:count].tolist(), self._seen[:count].tolist(), strict=True)
         return tuple([Other._make((looks[k][0], *where, *looks[k][1:])) for k, where in near])
 

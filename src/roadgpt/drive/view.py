@@ -34,6 +34,17 @@ class LightAhead(NamedTuple):
     shows: Literal["green", "yellow", "red"]
 
 
+class SignAhead(NamedTuple):
+    """A sign that the route comes to, as a driver sees it."""
+
+    kind: Literal["stop", "yield", "speed limit"]
+    distance: float
+    """Distance in metres along the route from the car's centre of gravity: to the line of "stop" and "yield",
+    or to the junction where there is no line; 0 of a speed limit that holds where the car is."""
+    limit: float | None = None
+    """The speed limit in m/s; None for other signs."""
+
+
 class Other(NamedTuple):
     """Somebody or something else on the road, as a driver sees it."""
 
@@ -105,6 +116,9 @@ class View(NamedTuple):
     lights: tuple[LightAhead, ...] = ()
     """The traffic lights on the route whose stop lines are ahead of the car, nearest first; empty if no
     traffic drives on the map: then all lights are green."""
+    signs: tuple[SignAhead, ...] = ()
+    """The signs on the route, nearest first: to stop or to give way, and the speed limits that its lanes have
+    of their own. Empty if a simulator does not tell them."""
 
 
 class CameraSpec(NamedTuple):

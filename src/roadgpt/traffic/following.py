@@ -209,7 +209,7 @@ def _holds(
 
 
 @inlined
-def _time_over(v: float, way: float, top: float, pull: float) -> float:
+def time_over(v: float, way: float, top: float, pull: float) -> float:
     """Returns the seconds that a vehicle needs for some metres when it accelerates up to a speed."""
     if v >= top:
         return way / max(v, 0.1)
@@ -295,7 +295,7 @@ def _may_enter(
             if is_there and not leads:  # who leads, with its rear still there, is followed
                 return False
         until = max(ahead, 0.0) + lanes.conflict_at[c, 1] + row[LENGTH] / 2.0
-        leaves = _time_over(row[V], until, slowest, row[PULL])
+        leaves = time_over(row[V], until, slowest, row[PULL])
         for j in range(present):
             if j == i or whole[j, STATE] != DRIVES:
                 continue

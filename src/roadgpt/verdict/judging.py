@@ -30,6 +30,8 @@ INCIDENTS: dict[str, str] = {
     "wrong way": "against the direction of its lane",
     "off road": "a wheel off the road",
     "stop line": "no stop at a stop sign",
+    "red light": "past a red light",
+    "failure to yield": "no giving way",
     "collision": "a contact",
     "near miss": "a near miss",
     "blocked": "standing for 30 s before a free way",
@@ -41,8 +43,8 @@ FACES: dict[Face, str] = {"front": "front", "rear": "rear", "left": "left side",
 LEAST = 0.005  # m; smaller distances beyond a marking are not stated
 
 # The competition's own words, to which it adds the name of the simulation. For the competition, a car that
-# falls has left the lane. The competition has neither stop signs nor others on the road, so the words for a
-# collision are ours.
+# falls has left the lane. The competition has neither signs, lights nor others on the road, so the words for
+# a collision are ours.
 SBFT: dict[Cause | None, str] = {
     None: "Successful test",
     "out of lane": "Car drove out of the lane",
@@ -53,9 +55,13 @@ SBFT: dict[Cause | None, str] = {
     "wrong turn": "Car drove out of the lane",
     "wrong way": "Car drove out of the lane",
     "stop line": "Successful test",
+    "red light": "Successful test",
+    "failure to yield": "Successful test",
 }
 
-FAILING: tuple[Cause, ...] = ("collision", "wrong turn", "wrong way", "stop line")
+FAILING: tuple[Cause, ...] = (
+    "collision", "wrong turn", "wrong way", "stop line", "red light", "failure to yield",
+)  # fmt: skip
 """The kinds of incidents that fail a test: if nothing else failed, or, with others on the road, if they came
 first. The kind of the first such incident is then the cause. A tyre off the road, near misses, standing and
 speeding fail no test.
@@ -69,6 +75,8 @@ FAILED: dict[Cause, str] = {
     "wrong turn": "took a wrong turn {reached} {fast}",
     "wrong way": "drove against the direction of its lane {reached} {fast}",
     "stop line": "did not stop at the stop sign {reached}: it crossed the line {fast}",
+    "red light": "ran a red light {reached}: it crossed the line {fast}",
+    "failure to yield": "did not give way to {whom} {reached}: it entered the junction {fast}",
     "collision": "{contact}",
     "stuck": "was stuck {reached}: it moved less than 1 m in 10 s",
     "timeout": "ran out of time {reached} of {length:.0f} m",
@@ -128,7 +136,8 @@ def judge(
     if cause is None:
         description = _kept(drive, world, least, beyond)
     else:
-        description = _failed(road, drive, world, step, cause, side, contact)
+        whom = next((each.other for each in incidents or () if each.kind == cause), None)
+        description = _failed(road, drive, world, step, cause, side, contact, whom)
     untold = [each for each in incidents or () if each is not contact or cause == "collision"]
     description += _counted(untold, cause) + _who_drove(drive.shares, handed_to)
     avoidance = None
@@ -254,6 +263,7 @@ def _failed(
     cause: Cause,
     side: Side | None,
     contact: Incident | None,
+    whom: str | None,
 ) -> str:
     profile = world.profile_of(road)
     is_beside = (
@@ -273,6 +283,7 @@ def _failed(
         fast=f"at {drive['speed'][step] * 3.6:.0f} km/h",
         how="" if contact else f": {how}",
         length=road.length,
+        whom=whom,
         contact=_touched(contact, f"after {contact.at_s:.0f} m") if contact else "hit somebody",
     )
     if contact is None or cause == "collision":

@@ -19,7 +19,16 @@ from roadgpt.reading import strictly
 Outcome = Literal["PASS", "FAIL", "UNAVOIDABLE"]
 """UNAVOIDABLE: a collision that no driver could have avoided, which is no failure."""
 Cause = Literal[
-    "out of lane", "fell", "stuck", "timeout", "collision", "wrong turn", "wrong way", "stop line"
+    "out of lane",
+    "fell",
+    "stuck",
+    "timeout",
+    "collision",
+    "wrong turn",
+    "wrong way",
+    "stop line",
+    "red light",
+    "failure to yield",
 ]
 Side = Literal["left", "right"]
 Face = Literal["front", "rear", "left", "right"]
@@ -37,6 +46,8 @@ IncidentKind = Literal[
     "wrong way",
     "off road",
     "stop line",
+    "red light",
+    "failure to yield",
     "collision",
     "near miss",
     "blocked",
@@ -79,7 +90,7 @@ class Incident:
     at_time: float
     """Time in seconds since the start of the drive."""
     other: str | None = None
-    """Name of the other, of a collision or a near miss; None for other kinds."""
+    """Name of the other, of a collision, a near miss or a failure to yield; None for other kinds."""
     contact: Contact | None = None
     """How they touched in a collision; None for other kinds."""
 
@@ -106,7 +117,8 @@ class Verdict:
     """Cause of the failure, or of what was unavoidable; None if the car kept its lane and reached the goal.
 
     "wrong turn", "wrong way" and "stop line" occur only on routes through junctions, if nothing else failed,
-    or if others are on the road; "collision" only if others are.
+    or if others are on the road; "collision" only if others are, and "red light" and "failure to yield" only
+    on routes with others.
     """
     description: str
     """The result of the drive in one sentence."""
