@@ -4,12 +4,12 @@ Each of the four drivers of ``verdict.careful`` takes the place of the tested ca
 contact and further along its lane; it can brake, but not steer. The other moves as recorded; from the end of
 the recording, or from a contact that makes it brake, it goes on evenly.
 
-A driver begins when the other is visible, at most WINDOW before the contact: there is a line from its eye,
-EYE above the ground, to the top of a corner or the middle of the other's box, which is no longer than the
-visual range in fog, and which neither the road's profile nor the box of anybody else cuts. What the tested
-car's own sensors see does not matter. It drives as the tested car did, but never faster than the limit, nor
-than the speed from which the careful driver stops within the sight distance of that moment: as far as it sees
-an object of OBJECT on its way (AASHTO 2018, stopping sight distance), in fog at most the visual range.
+A driver begins when the other is visible, at most WINDOW before the contact: it is within the visual range in
+fog, and a line from the eye leads to it past all other boxes and over the road's profile, as in
+``drive.company``. What the tested car's own sensors see does not matter. It drives as the tested car did, but
+never faster than the limit, nor than the speed from which the careful driver stops within the sight distance
+of that moment: as far as it sees an object of OBJECT on its way (AASHTO 2018, stopping sight distance), in
+fog at most the visual range.
 
 What a driver is alarmed by:
 
@@ -26,16 +26,17 @@ than the least distance of R157, 5.2.3.3, for KEPT before the danger began, or m
 outside its lane. Whoever ran a light, took a wrong way or left its lane before has failed by that already.
 """
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.brief.scene import VEHICLES
-from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y, Z
+from roadgpt.drive.company import EYE, SPACING, in_sight
+from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y
 from roadgpt.verdict.among_others import limits_along
 from roadgpt.verdict.careful import CAREFUL, DRIVERS, Driver, Moment, drive_on, stopping_distance
-from roadgpt.verdict.contact import CORNER, OUTLINE, middles, separation, turned
+from roadgpt.verdict.contact import CORNER, middles, separation
 from roadgpt.verdict.measures import ACROSS, ALONG, Line, driven_lane
 from roadgpt.verdict.verdict import PARTLY, Incident, percent
 
@@ -48,7 +49,7 @@ BoolArray = NDArray[np.bool_]
 
 FINE = 0.01  # s, from one step of a driver to the next
 WINDOW, AFTER = 10.0, 10.0  # s before and after the contact: from 130 km/h the four stop within 7 s
-EYE, BEHIND, OBJECT = 1.2, 2.0, 0.6  # m: the eye above the ground and behind the car's front; an object
+BEHIND, OBJECT = 2.0, 0.6  # m: the eye behind the car's front; the height of an object
 AHEAD = 300.0  # m of lane after the contact
 WANDERS, EVALUATED, SUDDEN = 0.375, 0.4, 5.0  # m, s, m/s^2
 TOWARDS = 0.05  # m/s sideways; tracks are rounded to a millimetre
@@ -60,17 +61,11 @@ FRONTS = np.array(
 STOPPED = 6.0  # m/s^2, with which the mover idm stops whoever was hit
 
 
-class Avoidance(NamedTuple):
-    """Whether, by whom and how a collision could have been avoided."""
-
-    is_avoidable: bool
-    by: tuple[str, ...]
-    """Those of the four drivers who avoid it."""
-    said: str
-
-
-def avoidance_of(road: "Road", drive: "Drive", world: "World", collision: Incident) -> Avoidance:
-    """Returns whether the tested car's first collision could have been avoided."""
+def avoidance_of(
+    road: "Road", drive: "Drive", world: "World", collision: Incident
+) -> tuple[bool, tuple[str, ...], str]:
+    """Returns whether the tested car's first collision could have been avoided, which of the four drivers
+    avoid it, and how in words."""
     meeting = _Meeting(road, drive, world, collision)
     courses = {driver: _course(driver, meeting) for driver in DRIVERS}
     by = tuple(driver.said for driver, (hits, _) in courses.items() if not hits)
@@ -81,8 +76,8 @@ def avoidance_of(road: "Road", drive: "Drive", world: "World", collision: Incide
     else:
         said = "no reference driver (careful driver, Reg157, FSM, RSS) could have avoided it"
     if own := meeting.own_doing():
-        return Avoidance(True, by, f"avoidable: it {own}" + f"; {said}" * bool(by))
-    return Avoidance(bool(by), by, said)
+        return True, by, f"avoidable: it {own}" + f"; {said}" * bool(by)
+    return bool(by), by, said
 
 
 def _course(driver: Driver, meeting: "_Meeting") -> tuple[bool, str]:
@@ -138,7 +133,8 @@ class _Meeting:
         towards, clearance = -np.sign(t) * drift, np.abs(t) - side - drive.car.width / 2
         follows = (np.abs(np.sin(heading)) < ACROSS) & (np.cos(heading) > 0) & (pace > STILL)
         follows &= actor.kind in VEHICLES
-        home = _home(road, world, collision.at_s, aside, float(t[start]))
+        wide = float(world.profile_of(road).width(collision.at_s))
+        home = wide * round((t[start] + aside) / wide) - aside  # the middle of its lane
         wanders = ((home - t) * np.sign(home) >= WANDERS) & (towards > TOWARDS)
         wanders[:start] = False
         steps = round(EVALUATED / STEP)
@@ -166,7 +162,7 @@ class _Meeting:
         self.recorded = np.interp(then, drive["time"], np.abs(drive["speed"]))
         limit = np.interp(then, drive["time"], limits_along(road, drive, world))
         self.free = np.minimum(self.recorded, np.minimum(limit, np.interp(sight, ways, speeds))).tolist()
-        self.places = self._places(then)
+        self.places = np.interp(then, self.when, self.run)
         self.first = float(self.places[0])
         self._samples = range(0, max(int((self.at_time - since) / FINE), 1), round(STEP / FINE))
 
@@ -178,31 +174,14 @@ class _Meeting:
         """Whether there is a free line of sight to one of the others; ``reach`` is the visual range."""
         assert self.drive.others is not None
         actors, states = self.drive.others.actors, self.drive.others.at(time)
-        state, size, eye_at = states[number], actors[number].size, self._eye(time)
-        eye = self.way.at(np.array(eye_at)) + [0.0, 0.0, EYE]
-        marks = np.vstack([OUTLINE, [0.0, 0.0]]) * [size.length / 2, size.width / 2]
-        marks, top = state[[X, Y]] + turned(marks, state[HEADING]), float(state[Z]) + size.height
-        is_free = np.hypot(*(marks - eye[:2]).T) <= reach
-        along = self.way.run[self.way.tree.query(state[[X, Y]])[1]]
-        between = (self.way.run > eye_at) & (self.way.run < along)
-        slopes = (self.way.z[between] - eye[2]) / (self.way.run[between] - eye_at)
-        if (slopes * (along - eye_at) > top - eye[2]).any():
-            return False
-        for place, (actor, it) in enumerate(zip(actors, states, strict=True)):
-            if place == number or np.isnan(it[X]) or not is_free.any():
-                continue
-            start, ends = (turned(point - it[[X, Y]], -it[HEADING]) for point in (eye[:2], marks))
-            half = np.array(actor.size[:2]) / 2
-            with np.errstate(divide="ignore", invalid="ignore"):
-                shares = np.sort(np.stack([-half - start, half - start])[:, None] / (ends - start), axis=0)
-            first, last = np.clip(shares[0].max(axis=-1), 0, 1), np.clip(shares[1].min(axis=-1), 0, 1)
-            heights = eye[2] + (top - eye[2]) * np.stack([first, last])
-            is_over = (heights.min(axis=0) < it[Z] + actor.size.height) & (heights.max(axis=0) > it[Z])
-            is_free &= ~((first < last) & is_over)
-        return bool(is_free.any())
-
-    def _places(self, time: FloatArray) -> FloatArray:
-        return np.asarray(np.interp(time, self.when, self.run))
+        order = np.flatnonzero(~np.isnan(states[:, X]))
+        sizes, count = np.array([each.size for each in actors]), len(order)
+        eye = self.way.at(np.array(self._eye(time))) + [0.0, 0.0, EYE]
+        ground = np.column_stack([self.way.middle, self.way.z])[:: round(SPACING / ALONG)]
+        found = in_sight(
+            states, sizes, eye, ground, order, np.empty((count, 4)), count, reach + sizes[number, 0] / 2
+        )
+        return number in order[:found]
 
     def seen(self, at: int, place: float, speed: float, gained: float) -> Moment:
         """Returns what a driver sees at a step, given its place, speed and acceleration."""
@@ -268,16 +247,6 @@ def _way(
     further = lane.at(last.along + np.arange(ALONG, AHEAD, ALONG), float(last.t[0]))
     way = np.concatenate([np.stack(driven, axis=-1), further])
     return Line(way, np.full(len(way), drive.car.width)), when, run, float(last.t[0])
-
-
-def _home(road: "Road", world: "World", s: float, aside: float, t: float) -> float:
-    """Returns the middle of the lane of somebody ``t`` metres beside the way; ``t`` beside all lanes."""
-    profile = world.profile_of(road)
-    left, right = profile.lane_edges(s)
-    edges = np.sort([float(each) for each in (*left, profile.centre(s), *right)])
-    lanes = (edges[:-1] + edges[1:]) / 2 - float(profile.middle(s)) - aside
-    place = int(np.argmin(np.abs(lanes - t)))
-    return float(lanes[place]) if abs(lanes[place] - t) < np.diff(edges)[place] / 2 else t
 
 
 def _sight(way: Line, eye_at: float, reach: float) -> float:

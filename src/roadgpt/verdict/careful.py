@@ -165,14 +165,10 @@ def drive_on(
 
 
 def stopping_distance(speed: float) -> float:
-    """Returns the way in metres that the careful driver needs to stop, from a danger on."""
-    way, left = 0.0, speed
-    for time, before, jerk in ((DELAY, RELEASED, 0.0), ((FULL - RELEASED) / JERK, RELEASED, JERK)):
-        if jerk:
-            halt = (math.sqrt(before**2 + 2 * jerk * left) - before) / jerk
-        else:
-            halt = left / before
-        time = min(time, halt)
-        way += left * time - before * time**2 / 2 - jerk * time**3 / 6
-        left -= before * time + jerk * time**2 / 2
-    return way + max(left, 0.0) ** 2 / (2 * FULL)
+    """Returns the way in metres that the careful driver needs to stop, from a danger on and from 3 m/s
+    on."""
+    rises = (FULL - RELEASED) / JERK
+    braking = speed - RELEASED * DELAY
+    full = braking - (RELEASED + FULL) / 2 * rises
+    way = (speed + braking) / 2 * DELAY + braking * rises - RELEASED / 2 * rises**2 - JERK / 6 * rises**3
+    return way + full**2 / (2 * FULL)

@@ -10,7 +10,7 @@ from roadgpt.errors import UsageError
 from roadgpt.network import only_road
 from roadgpt.road.world import share_in_words
 from roadgpt.verdict.oracle import EPSILON, consult, has_departed, is_outside, margins
-from roadgpt.verdict.verdict import STANDS, Cause, Face, Incident, Side, Verdict, percent
+from roadgpt.verdict.verdict import STANDS, Cause, Face, Incident, Outcome, Side, Verdict, percent
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
@@ -140,20 +140,18 @@ def judge(
         description = _failed(road, drive, world, step, cause, side, contact, whom)
     untold = [each for each in incidents or () if each is not contact or cause == "collision"]
     description += _counted(untold, cause) + _who_drove(drive.shares, handed_to)
-    avoidance = None
     s, x, y, time = (float(drive[name][step]) for name in ("s", "x", "y", "time"))
+    outcome: Outcome = "FAIL" if cause else "PASS"
+    avoided_by: tuple[str, ...] | None = None
     if cause == "collision" and contact is not None:
         from roadgpt.verdict.avoidable import avoidance_of
 
-        avoidance = avoidance_of(road, drive, world, contact)
-        description += f"; {avoidance.said}"
+        is_avoidable, avoided_by, said = avoidance_of(road, drive, world, contact)
+        outcome = "FAIL" if is_avoidable else "UNAVOIDABLE"
+        description += f"; {said}"
         s, (x, y), time = contact.at_s, contact.at_xy, contact.at_time
     return Verdict(
-        outcome="PASS"
-        if cause is None
-        else "FAIL"
-        if avoidance is None or avoidance.is_avoidable
-        else "UNAVOIDABLE",
+        outcome=outcome,
         cause=cause,
         description=description,
         sbft_description=SBFT[cause],
@@ -167,7 +165,7 @@ def judge(
         side=side,
         incidents=incidents,
         own_share=drive.shares.get(drive.driver),
-        avoided_by=avoidance and avoidance.by,
+        avoided_by=avoided_by,
         handed_to=handed_to,
     )
 
