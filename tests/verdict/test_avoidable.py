@@ -171,6 +171,41 @@ def test_cut_ins_and_blows_from_behind() -> None:
     assert head_on.outcome == "UNAVOIDABLE"
 
 
+def test_a_cut_in_is_perceived_before_it_reaches_the_strip() -> None:
+    """With 60 and 20 km/h, 30 m and 1 m/s sideways, the careful driver is just in time if it takes note 0.4 s
+    after 0.375 m, and too late by far when the other reaches into its strip, after 2.17 of 4 m."""
+    closing, delay = 40 / 3.6, (0.375 / 1.0 + 0.4, 2.17 / 1.0)
+    room = [30 - closing * each - braked(closing, 0.75, 0.4, 12.65, 0.774 * G) for each in delay]
+    assert room[0] > 0.5
+    assert room[1] < -10
+    found = verdict(
+        scene(straight(10, LANE, 0, 60 / 3.6), car_1=("car", cuts_in(44.7 + closing, 20 / 3.6, 1.0, 1.0)))
+    )
+    assert "careful driver" in (found.avoided_by or ())
+
+
+@pytest.mark.parametrize("brakes", [6.0, 5.0])
+def test_who_is_stopped_by_the_contact_would_have_gone_on(brakes: float) -> None:
+    """Somebody crosses with 3 m/s and is hit near its rear, 0.3 s before it would have left the strip; it is
+    there only from 2.3 s on, too late to stop. As vehicles of a flow brake with 6 m/s2 after a contact, it is
+    taken to go on then, and not if it brakes otherwise."""
+
+    def crosses(time: Any) -> Any:
+        after = np.clip(time - 4.0, 0, 3 / brakes)
+        y = -1.9 + 2.35 + 3 * np.minimum(time - 4, 0) + 3 * after - brakes * after**2 / 2
+        return 60.0 + 0 * time, y, np.pi / 2 + 0 * time
+
+    v = 50 / 3.6
+    own = straight(60 - 0.9 - BOX.length / 2 - v * 4.01, LANE, 0, v)
+    drive = scene(own, 7.0, car_1=("car", crosses))
+    assert drive.others is not None
+    states = drive.others.states.copy()
+    states[:23] = np.nan
+    found = verdict(among(drive, Tracks(drive.others.actors, states)))
+    assert found.at_time == pytest.approx(4.01, abs=0.01)
+    assert ("careful driver" in (found.avoided_by or ())) == (brakes == 6.0)
+
+
 def test_who_was_partly_outside_its_lane_could_have_avoided_it() -> None:
     oncoming = {"car_1": ("car", straight(150, 0.6, np.pi, 14.0))}
     for y, outcome in ((-1.1, "UNAVOIDABLE"), (-0.7, "FAIL")):  # 0 and 12 % of 1.86 m beyond the marking at 0

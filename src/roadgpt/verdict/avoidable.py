@@ -1,29 +1,16 @@
 """Finds whether a careful driver could have avoided a collision of the tested car.
 
 Each of the four drivers of ``verdict.careful`` takes the place of the tested car, on its way up to the
-contact and further along its lane; it can brake, but not steer. The other moves as recorded; from the end of
-the recording, or from a contact that makes it brake, it goes on evenly.
+contact and further along its lane, from when the other is visible on; it can brake, but not steer. The other
+moves as recorded; from the end of the recording, or from a contact that makes it brake, it goes on evenly.
 
-A driver begins when the other is visible, at most WINDOW before the contact: it is within the visual range in
-fog, and a line from the eye leads to it past all other boxes and over the road's profile, as in
-``drive.company``. What the tested car's own sensors see does not matter. It drives as the tested car did, but
-never faster than the limit, nor than the speed from which the careful driver stops within the sight distance
-of that moment: as far as it sees an object of OBJECT on its way (AASHTO 2018, stopping sight distance), in
-fog at most the visual range.
+- A vehicle that goes along the way is followed or cuts in, as in UN Regulation No. 157. It is perceived
+  EVALUATED after its middle has come WANDERS out of the middle of its lane towards the car, or once it is in
+  the strip that the car's box needs; a hard braking, of SUDDEN, EVALUATED after its begin.
+- For everybody else the definition is ours: danger begins when the path that it takes with its present
+  velocity leads into the car's strip before the car has passed.
 
-What a driver is alarmed by:
-
-- a vehicle that goes along its way is followed, cuts in, or is found behind one that cuts out, as in UN
-  Regulation No. 157. It is perceived EVALUATED after its middle has come WANDERS out of the middle of its
-  lane towards the car, or once it is in the strip that the car's box needs; a hard braking, of SUDDEN,
-  EVALUATED after its begin;
-- for everybody else, persons, crossing and oncoming traffic, and whatever stands, the definition is ours:
-  danger begins when the path that it takes with its present velocity leads into the car's strip before the
-  car has passed.
-
-A collision is avoidable if one of the four avoids it; or if the tested car brought it about: it kept less
-than the least distance of R157, 5.2.3.3, for KEPT before the danger began, or more than a tenth of it was
-outside its lane. Whoever ran a light, took a wrong way or left its lane before has failed by that already.
+``docs/explanation/traffic.md`` has all definitions.
 """
 
 from typing import TYPE_CHECKING
@@ -34,6 +21,7 @@ from numpy.typing import NDArray
 from roadgpt.brief.scene import VEHICLES
 from roadgpt.drive.company import EYE, SPACING, in_sight
 from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y
+from roadgpt.traffic.following import AFTER_CONTACT
 from roadgpt.verdict.among_others import limits_along
 from roadgpt.verdict.careful import CAREFUL, DRIVERS, Driver, Moment, drive_on, stopping_distance
 from roadgpt.verdict.contact import CORNER, middles, separation
@@ -58,7 +46,6 @@ FRONTS = np.array(
     [[2.0, 2.0, 2.4, 3.33, 5.56, 8.33, 11.11, 13.89, 16.67], [1, 1, 1, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6]]
 )
 """R157, 5.2.3.3: speeds in m/s and the least time gaps in s; the least distance is 2 m."""
-STOPPED = 6.0  # m/s^2, with which the mover idm stops whoever was hit
 
 
 def avoidance_of(
@@ -218,7 +205,7 @@ class _Meeting:
 def _is_stopped(speed: FloatArray) -> bool:
     """Whether a contact made the other brake, as the mover idm does; ``speed`` is its from then on."""
     change = np.diff(speed)[1:4]
-    return len(change) == 3 and bool((np.abs(change + STOPPED * STEP) < 0.01).all())
+    return len(change) == 3 and bool((np.abs(change + AFTER_CONTACT * STEP) < 0.01).all())
 
 
 def _fog(world: "World") -> float:

@@ -138,14 +138,10 @@ def drive_on(
     step: float,
     first: float = 0.0,
 ) -> tuple[list[float], list[float]]:
-    """Returns where a driver is, in metres along its path, and its speeds in m/s, every ``step`` seconds.
+    """Returns where a driver is, in metres along its path from ``first`` on, and its speeds in m/s.
 
-    Args:
-        driver: one of the four.
-        seen: returns what it sees at a step, given its place, speed and acceleration.
-        free: its speeds in m/s as long as it has seen no danger, one for each step.
-        step: seconds between two steps. Mattas et al. used 0.1 s.
-        first: where it is at first, in metres."""
+    ``seen`` tells what it sees, from the number of the step, its place, speed and acceleration; ``free`` are
+    its speeds at every step as long as it has seen no danger; ``step`` is 0.1 s with Mattas et al."""
     places, speeds, gained, delay = [first], [free[0]], 0.0, math.ceil(driver.delay / step - 1e-9)
     waited, deceleration, is_alarmed = 0, 0.0, False
     for at in range(len(free) - 1):
