@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.compiled import compiled
+from roadgpt.compiled import compiled, inlined
 from roadgpt.drive.drive import COLUMNS, Box, FloatArray
 from roadgpt.drive.view import LightAhead, Other
 from roadgpt.network.lanes import HEADROOM
@@ -59,6 +59,28 @@ def look_around(
     return count, touches
 
 
+@inlined
+def _hides(
+    states: FloatArray, sizes: FloatArray, m: int, eye: FloatArray, x: float, y: float, z: float
+) -> bool:
+    """Returns whether box ``m`` lies between the eye and a point."""
+    c, s = math.cos(states[m, 3]), math.sin(states[m, 3])
+    dx, dy, there_x, there_y = eye[0] - states[m, 0], eye[1] - states[m, 1], x - eye[0], y - eye[1]
+    low, high = 0.0, 1.0
+    for axis in range(2):
+        here = dx * c + dy * s if axis == 0 else dy * c - dx * s
+        slope = there_x * c + there_y * s if axis == 0 else there_y * c - there_x * s
+        room = sizes[m, axis] / 2.0
+        if abs(slope) < 1e-9:
+            if abs(here) > room:
+                return False
+        else:
+            one, two = (-room - here) / slope, (room - here) / slope
+            low, high = max(low, min(one, two)), min(high, max(one, two))
+    one, two = eye[2] + low * (z - eye[2]), eye[2] + high * (z - eye[2])
+    return low < high and min(one, two) < states[m, 2] + sizes[m, 2] and max(one, two) > states[m, 2]
+
+
 @compiled
 def in_sight(
     states: FloatArray, sizes: FloatArray, eye: FloatArray, road: FloatArray, order: "NDArray[np.int64]",
@@ -70,27 +92,42 @@ def in_sight(
     Somebody is seen if a line from the eye leads to the top of its box, at its middle or a corner, past all
     other boxes and, for the middle, above the points (n, 3) of the road. ``sizes`` (n, 3) are lengths, widths
     and heights."""
-    near, kept = order[:count].copy(), 0
+    near, before, kept = order[:count].copy(), np.empty(count, np.int64), 0
+    ways = np.empty((count, 4))  # distance, bearing and radius of a box, and half of the angle that it covers
     for place in range(count):
         k = near[place]
-        ahead, aside = states[k, 0] - eye[0], states[k, 1] - eye[1]
-        far, top = math.hypot(ahead, aside), states[k, 2] + sizes[k, 2]
+        x, y = states[k, 0] - eye[0], states[k, 1] - eye[1]
+        far, radius = math.hypot(x, y), math.hypot(sizes[k, 0], sizes[k, 1]) / 2.0
+        wide = math.asin(radius / far) if far > radius else math.pi
+        ways[place, 0], ways[place, 1], ways[place, 2], ways[place, 3] = far, math.atan2(y, x), radius, wide
+    for place in range(count):
+        k, far = near[place], ways[place, 0]
+        ahead, aside, top = states[k, 0] - eye[0], states[k, 1] - eye[1], states[k, 2] + sizes[k, 2]
         is_hidden = far > reach
         for n in range(len(road)):
             x, y = road[n, 0] - eye[0], road[n, 1] - eye[1]
             u = (x * ahead + y * aside) / max(far * far, 1e-9)
             if 0.0 < u < 1.0 and abs(y * ahead - x * aside) < BESIDE * far:
                 is_hidden = is_hidden or road[n, 2] > eye[2] + u * (top - eye[2])
+        if is_hidden:
+            continue
+        some = 0
+        for n in range(count):
+            apart, least = abs(ways[n, 1] - ways[place, 1]), ways[n, 3] + ways[place, 3]
+            is_nearer = n != place and ways[n, 0] - ways[n, 2] < far + ways[place, 2]
+            if is_nearer and min(apart, 2.0 * math.pi - apart) < least:
+                before[some] = near[n]
+                some += 1
         c, s, is_seen = math.cos(states[k, 3]), math.sin(states[k, 3]), False
         for point in range(5):
-            if is_hidden or is_seen:
+            if is_seen:
                 break
             along = (0.0, 1.0, 1.0, -1.0, -1.0)[point] * sizes[k, 0] / 2.0
             across = (0.0, 1.0, -1.0, 1.0, -1.0)[point] * sizes[k, 1] / 2.0
             x, y = states[k, 0] + along * c - across * s, states[k, 1] + along * s + across * c
             is_seen = True
-            for m in near:
-                if m != k and _hides(states[m], sizes[m], eye, x, y, top):
+            for n in range(some):
+                if _hides(states, sizes, before[n], eye, x, y, top):
                     is_seen = False
                     break
         if is_seen:
@@ -98,26 +135,6 @@ def in_sight(
             seen[kept] = seen[place]
             kept += 1
     return kept
-
-
-@compiled
-def _hides(state: FloatArray, size: FloatArray, eye: FloatArray, x: float, y: float, z: float) -> bool:
-    """Returns whether a box lies between the eye and a point."""
-    c, s = math.cos(state[3]), math.sin(state[3])
-    dx, dy, there_x, there_y = eye[0] - state[0], eye[1] - state[1], x - eye[0], y - eye[1]
-    low, high = 0.0, 1.0
-    for axis in range(2):
-        here = dx * c + dy * s if axis == 0 else dy * c - dx * s
-        slope = there_x * c + there_y * s if axis == 0 else there_y * c - there_x * s
-        room = size[axis] / 2.0
-        if abs(slope) < 1e-9:
-            if abs(here) > room:
-                return False
-        else:
-            one, two = (-room - here) / slope, (room - here) / slope
-            low, high = max(low, min(one, two)), min(high, max(one, two))
-    one, two = eye[2] + low * (z - eye[2]), eye[2] + high * (z - eye[2])
-    return low < high and min(one, two) < state[2] + size[2] and max(one, two) > state[2]
 
 
 class Company:

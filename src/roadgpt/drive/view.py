@@ -112,7 +112,9 @@ class View(NamedTuple):
     lanes_right: int = 0
     """Number of driving lanes to the right of the lane that the car is to follow, oncoming lanes included."""
     others: tuple[Other, ...] = ()
-    """The others on the road whose middles are within 200 m of the middle of the car, nearest first."""
+    """The others on the road whose middles are within 200 m of the middle of the car, on all sides, nearest
+    first. Left out is whom the driver cannot see, from 1.2 m above the road in the middle of the car: who is
+    hidden behind the boxes of others, or behind a crest of the road."""
     lights: tuple[LightAhead, ...] = ()
     """The traffic lights on the route whose stop lines are ahead of the car, nearest first; empty if no
     traffic drives on the map: then all lights are green."""
