@@ -6,9 +6,9 @@
 The cells are those of UN R157's cut-in grid: the tested car drives 20 to 60 km/h by 10, the other 10 to 50
 km/h less, 0 to 60 m ahead by 10, and comes sideways with 0.5 to 3.0 m/s by 0.5; cells in which the other
 would go backwards are left out. In each cell both programs say whether the two collide. The other's motion
-is that of the Joint Research Centre's program, which also lets the careful driver begin when the other reaches
-into its lane; the last column counts collisions if it begins as the regulation's text says, 0.4 s after the other
-has come 0.375 m out of the middle of its lane.
+is that of the Joint Research Centre's program, which also lets the careful driver begin when the other
+reaches into its lane; the last column counts collisions if it begins as the regulation's text says, 0.4 s
+after the other has come 0.375 m out of the middle of its lane.
 """
 
 import argparse

@@ -232,9 +232,9 @@ def test_a_driver_begins_when_the_other_is_visible() -> None:
 def test_a_careful_driver_stops_within_its_sight() -> None:
     """Whoever stands in the lane is avoidable in any fog and behind any crest, because it would have come
     slowly enough."""
-    for fog in (30, 60, 100):
-        found = verdict(scene(straight(10, LANE, 0, 36.0), 9, car_1=("car", straight(250, LANE, 0, 0))),
-                        world(f"fog {fog}"))  # fmt: skip
+    for conditions, kind in (("fog 30", "car"), ("fog 60", "car"), ("fog 100", "car"), ("night", "adult")):
+        there = {"it": (kind, straight(250, LANE, 0, 0))}
+        found = verdict(scene(straight(10, LANE, 0, 36.0), 9, **there), world(conditions))
         assert "careful driver" in (found.avoided_by or ())
         said = float(found.description.split("stops ")[1].split(" m short")[0])
         assert said == pytest.approx(0.1, abs=0.3)  # it uses all of its sight

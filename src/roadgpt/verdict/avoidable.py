@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.brief.scene import VEHICLES
+from roadgpt.brief.visibility import visual_range, weather_drawn
 from roadgpt.drive.company import EYE, SPACING, in_sight
 from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y
 from roadgpt.traffic.following import AFTER_CONTACT
@@ -99,12 +100,14 @@ class _Meeting:
         size = np.broadcast_to([length / 2, width / 2], (len(other), 2))
         boxes = way.boxes(other[:, X], other[:, Y], other[:, HEADING], size, other[:, SPEED])
         time, self.way = STEP * np.arange(begin, hit + 1), way
-        seen = np.array([self._is_seen(number, each, _fog(world)) for each in time])
+        scene = weather_drawn(world.scene, drive.seed)
+        reach = visual_range(scene, actor.kind)
+        seen = np.array([self._is_seen(number, each, reach) for each in time])
         start = int(np.argmax(seen)) if seen.any() else hit - begin
         early, since = float(time[max(start - 1, 0)]), float(time[start])
         while since - early > FINE / 10:
             middle = (early + since) / 2
-            early, since = (early, middle) if self._is_seen(number, middle, _fog(world)) else (middle, since)
+            early, since = (early, middle) if self._is_seen(number, middle, reach) else (middle, since)
         seen[max(start - 1, 0)] = True
 
         # From the last sample on, the other goes on evenly.
@@ -145,7 +148,7 @@ class _Meeting:
         then = np.minimum(at, self.at_time)
         speeds = np.arange(0.0, 80.0, 0.1)
         ways = [stopping_distance(speed) for speed in speeds]
-        sight = _sight(way, self._eye(since), _fog(world)) - BEHIND
+        sight = _sight(way, self._eye(since), visual_range(scene, "lane")) - BEHIND
         self.recorded = np.interp(then, drive["time"], np.abs(drive["speed"]))
         limit = np.interp(then, drive["time"], limits_along(road, drive, world))
         self.free = np.minimum(self.recorded, np.minimum(limit, np.interp(sight, ways, speeds))).tolist()
@@ -206,11 +209,6 @@ def _is_stopped(speed: FloatArray) -> bool:
     """Whether a contact made the other brake, as the mover idm does; ``speed`` is its from then on."""
     change = np.diff(speed)[1:4]
     return len(change) == 3 and bool((np.abs(change + AFTER_CONTACT * STEP) < 0.01).all())
-
-
-def _fog(world: "World") -> float:
-    fog = world.scene.fog
-    return np.inf if fog is None or fog.lo is None else fog.lo
 
 
 def _way(
