@@ -10,7 +10,7 @@ from roadgpt.errors import UsageError
 from roadgpt.network import only_road
 from roadgpt.road.world import share_in_words
 from roadgpt.verdict.oracle import EPSILON, consult, has_departed, is_outside, margins
-from roadgpt.verdict.verdict import STANDS, Cause, Face, Incident, Side, Verdict, percent
+from roadgpt.verdict.verdict import STANDS, Cause, Face, Incident, Outcome, Side, Verdict, percent
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
@@ -99,7 +99,8 @@ def judge(
     missed stop is the failure. A tyre off the road is counted but fails no test.
 
     With others on the road, ``incidents`` also lists what ``roadgpt.verdict.among_others`` defines. Then the
-    earliest of all failures is the cause, and a contact within 3 s is told in the same sentence.
+    earliest of all failures is the cause, and a contact within 3 s is told in the same sentence. A collision
+    that no careful driver could have avoided, as ``roadgpt.verdict.avoidable`` defines it, is UNAVOIDABLE.
 
     ``known`` is the step that decides and the cause of failure, or None, if an earlier verdict has them;
     with others on the road they are found again.
@@ -140,10 +141,17 @@ def judge(
     untold = [each for each in incidents or () if each is not contact or cause == "collision"]
     description += _counted(untold, cause) + _who_drove(drive.shares, handed_to)
     s, x, y, time = (float(drive[name][step]) for name in ("s", "x", "y", "time"))
+    outcome: Outcome = "FAIL" if cause else "PASS"
+    avoided_by: tuple[str, ...] | None = None
     if cause == "collision" and contact is not None:
+        from roadgpt.verdict.avoidable import avoidance_of
+
+        is_avoidable, avoided_by, said = avoidance_of(road, drive, world, contact)
+        outcome = "FAIL" if is_avoidable else "UNAVOIDABLE"
+        description += f"; {said}"
         s, (x, y), time = contact.at_s, contact.at_xy, contact.at_time
     return Verdict(
-        outcome="FAIL" if cause else "PASS",
+        outcome=outcome,
         cause=cause,
         description=description,
         sbft_description=SBFT[cause],
@@ -157,6 +165,7 @@ def judge(
         side=side,
         incidents=incidents,
         own_share=drive.shares.get(drive.driver),
+        avoided_by=avoided_by,
         handed_to=handed_to,
     )
 
