@@ -18,8 +18,8 @@ from roadgpt.reading import strictly
 
 Outcome = Literal["PASS", "FAIL"]
 Cause = Literal[
-    "out of lane", "fell", "stuck", "timeout", "collision", "wrong turn", "wrong way", "stop line", "red light",
-    "failure to yield",
+    "out of lane", "fell", "stuck", "timeout", "collision", "wrong turn", "wrong way", "stop line",
+    "red light", "failure to yield",
 ]  # fmt: skip
 Side = Literal["left", "right"]
 Face = Literal["front", "rear", "left", "right"]
