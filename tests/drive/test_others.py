@@ -275,10 +275,9 @@ def seen_by_samples(eye: np.ndarray, boxes: list[np.ndarray], k: int, spare: flo
 
 
 def in_view(eye: np.ndarray, boxes: np.ndarray, road: np.ndarray, reach: float = 200.0) -> set[int]:
-    order, seen = np.zeros(len(boxes), np.int64), np.zeros((len(boxes), 4))
-    car = np.array([eye[0], eye[1], 0, 0, 4.7, 1.86])
-    count, _ = look_around(boxes[:, :5], boxes[:, 5:], car, order, seen)
-    kept = in_sight(boxes[:, :5], boxes[:, 5:], eye, road, order, seen, count, reach)
+    order = np.argsort(np.hypot(*(boxes[:, :2] - eye[:2]).T))
+    seen = np.ascontiguousarray(boxes[order, :4])
+    kept = in_sight(boxes[:, :5], boxes[:, 5:], eye, road, order, seen, len(boxes), reach)
     np.testing.assert_array_equal(seen[:kept, :2], boxes[order[:kept], :2])
     far = np.hypot(*(boxes[order[:kept], :2] - eye[:2]).T)
     assert (np.diff(far) >= 0).all()
