@@ -19,8 +19,8 @@ from roadgpt.reading import strictly
 Outcome = Literal["PASS", "FAIL", "UNAVOIDABLE"]
 """UNAVOIDABLE: a collision that no driver could have avoided, which is no failure."""
 Cause = Literal[
-    "out of lane", "fell", "stuck", "timeout", "collision", "wrong turn", "wrong way", "stop line", "red light",
-    "failure to yield",
+    "out of lane", "fell", "stuck", "timeout", "collision", "wrong turn", "wrong way", "stop line",
+    "red light", "failure to yield",
 ]  # fmt: skip
 Side = Literal["left", "right"]
 Face = Literal["front", "rear", "left", "right"]
