@@ -60,7 +60,8 @@ def avoidance_of(
     if CAREFUL.said in by:
         said = f"a careful driver (UN R157) brakes in time{courses[CAREFUL][1]}"
     elif by:
-        said = f"{' and '.join(by)} would have braked in time, a careful driver (UN R157) not"
+        names = " and ".join(filter(None, [", ".join(by[:-1]), by[-1]]))
+        said = f"{names} would have braked in time, a careful driver (UN R157) not"
     else:
         said = "no reference driver (careful driver, Reg157, FSM, RSS) could have avoided it"
     if own := meeting.own_doing():
