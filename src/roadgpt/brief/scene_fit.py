@@ -24,14 +24,16 @@ KMH = 3.6
 
 def fitted(brief: Brief, scene: Scene, limit: float) -> Brief:
     """Returns the Brief together with what a scene needs of its road and the Brief leaves open; ``limit`` is
-    the speed limit in m/s. Raises BriefError if the Brief excludes it."""
+    the speed limit in m/s. Raises BriefError if the Brief excludes it. Where the scene does not say the speed
+    of the tested car, the Brief excludes no length and no bend: the car then begins as fast as it can."""
     check_scene(scene, brief)
     if brief.map is not None or not (scene.actors or scene.speed or scene.slippery or scene.turn):
         return brief
     speed = (max(scene.speed.lo or 0.0, scene.speed.hi or 0.0) / KMH) if scene.speed else limit
-    before, stop = _until_stop(scene, speed), speed**2 / 2 / STOPS
+    before, stop, is_said = _until_stop(scene, speed), speed**2 / 2 / STOPS, scene.speed is not None
     if not brief.stretches:
-        return _long_enough(_wide_enough(_drivable(brief, before, speed), scene), before + stop, speed)
+        road = _wide_enough(_drivable(brief, before, speed, is_said), scene)
+        return _long_enough(road, before + stop, speed, is_said)
     places = [place for place in brief.junctions if place.kind not in (*LANE_KINDS, *RAMPS)]
     at_junction = bool(scene.turn) or any(role.where in ("junction", "roundabout") for role in scene.actors)
     first, *others = brief.stretches
@@ -50,7 +52,8 @@ def fitted(brief: Brief, scene: Scene, limit: float) -> Brief:
                 break
             left -= _length(road).hi + JUNCTION
             before -= min(_length(road).hi + JUNCTION, before)
-    first = _long_enough(_wide_enough(_drivable(first, before - stop, speed), scene), before, speed)
+    first = _wide_enough(_drivable(first, before - stop, speed, is_said), scene)
+    first = _long_enough(first, before, speed, is_said)
     return brief.model_copy(update={"stretches": (first, *others), "junctions": tuple(junctions)})
 
 
@@ -158,9 +161,11 @@ def _length(road: Brief) -> Range:
     )
 
 
-def _long_enough(road: Brief, metres: float, speed: float) -> Brief:
+def _long_enough(road: Brief, metres: float, speed: float, is_said: bool) -> Brief:
     have, metres = _length(road), float(ceil(metres / 10) * 10)
     if have.hi < metres:
+        if not is_said:
+            return road
         raise BriefError(
             f"at {KMH * speed:.0f} km/h the scene needs {metres:.0f} m of road to begin, to happen and to"
             f" stop, and {have.hi:g} m are asked for; ask for a longer road, or for a slower car"
@@ -170,7 +175,7 @@ def _long_enough(road: Brief, metres: float, speed: float) -> Brief:
     return road.model_copy(update={"length": Amount(lo=metres, hi=road.length and road.length.hi)})
 
 
-def _drivable(road: Brief, metres: float, speed: float) -> Brief:
+def _drivable(road: Brief, metres: float, speed: float, is_said: bool) -> Brief:
     """Asks for bends that the tested car can drive at its speed, or else for a straight before them."""
     radius, metres = float(ceil(speed**2 / ASIDE)), float(ceil(metres))
     turns = [each for each in road.clauses if each.kind not in ("straight", "crest", "dip")]
@@ -197,6 +202,8 @@ def _drivable(road: Brief, metres: float, speed: float) -> Brief:
         return road
     straight = Clause(kind="straight", length=at_least(metres))
     if lengths.hi < metres or (road.starts and road.starts.kind != "straight"):
+        if not is_said:
+            return road
         raise BriefError(
             f"at {KMH * speed:.0f} km/h the tested car needs {metres:.0f} m before bends of less than"
             f" {radius:.0f} m radius, and the words leave less; ask for wider bends, or for a slower car"
