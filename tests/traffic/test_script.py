@@ -10,6 +10,7 @@ from shapely import LineString, Point, Polygon
 
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.run import Setup, perform
 from roadgpt.traffic import STEP, Actor, TestedCar, begin
 from roadgpt.traffic.actor import Size, corners
 
@@ -267,18 +268,46 @@ def test_places_across_the_lane() -> None:
         ("truck ahead: brake 6 after turn 3", "names turn 3, but the road has 2 turns"),
         ("car ahead after junction 1", "names junction 1, but the road has no junction"),
         ("cones ahead gap=900", "would stand at"),
-        ("car lane right: keep", "no second lane of the same direction on the right"),
+        ("car lane left: keep; van lane right: keep", "no second lane of the same direction on the"),
         ("car lane left gap=-150: cut_in", "before the begin of the road"),
         ("car lane left gap=20 v=60: cut_in gap=40", "never comes to where"),
         ("adult crossing right s=30: cross", "cannot be where it meets"),
         ("car junction left", "passes no junction"),
         ("car ramp: merge", "passes no ramp"),
+        ("car behind: wrong_way", "drives away before it is on the road"),
         ("adult crosswalk: cross", "passes no crosswalk"),
     ],
 )
 def test_what_cannot_be_is_said_in_one_sentence(scene: str, said: str) -> None:
     with pytest.raises(UsageError, match=said):
         begin(CURVED, WORLD.changed(scene=scene), 1)
+
+
+def test_a_vehicle_meets_a_tested_car_of_changing_speed_at_a_junction_and_slows_down_for_bends() -> None:
+    plan = "straight 150 // crossroads straight none angle=90 // straight 150"
+    run = perform(plan, 1, setup=Setup(reader="plan", drives=False))
+    road, world = run.road, run.world
+    assert road is not None
+
+    def slower(time: float) -> float:
+        return 11.0 - min(time, 4.0)
+
+    seen = show("ego v=40; car junction right v=30: cross", road, 26.0, speed=slower, world=world)
+    track = seen.states[:, 0, :2]
+    meets = LineString(track[~np.isnan(track[:, 0])]).intersection(seen.path)
+    there, here = np.linalg.norm(track - [meets.x, meets.y], axis=1), seen.path.project(meets)
+    n = int(np.nanargmin(there))
+    # Euro NCAP, CCCscp: the middle of the front meets a quarter of the other's length behind its front
+    front = seen.car[:, 4] + BOX.length / 2 + 1.8 / 2
+    at = np.interp(here, front, np.arange(len(front)))
+    before = there[math.floor(at)] * (1 if at < n else -1)
+    assert before == pytest.approx(4.7 / 4, abs=30 / 3.6 * STEP + 0.3)
+    assert seen.states[n, 0, 4] * 3.6 == pytest.approx(30, abs=0.5)
+    off = show("car ahead: turn_off right to=45", road, 20.0, world=world)
+    rows = off.states[~np.isnan(off.states[:, 0, 0]), 0]
+    sideways = np.abs(np.diff(rows[:, 3])) / STEP * rows[1:, 4]
+    assert 5.0 < sideways.max() < 9.0  # 45 km/h through the whole bend would be more than 15
+    assert rows[-1, 3] - rows[0, 3] == pytest.approx(-math.pi / 2, abs=0.05)
 
 
 def test_who_comes_from_behind_appears_when_its_place_is_on_the_road() -> None:

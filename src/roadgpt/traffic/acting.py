@@ -13,16 +13,16 @@ from roadgpt.brief.junctions import Side
 from roadgpt.brief.scene import ActorKind, Mark, What, Where
 from roadgpt.traffic.actor import STEP, Size
 from roadgpt.traffic.following import HARDEST, JAM, idm
-from roadgpt.traffic.way import Way
+from roadgpt.traffic.way import GRIP, Way
 
 ROLL = 4.0  # s, after which the first action begins whose begin the scene leaves open
 LAST = 2.5  # s before a meeting, from which on somebody who is moving no longer matches the tested car
 CATCH_UP = 1.0  # s, in which most of the way that is missing before a meeting is made good
 MATCHED = 3.0  # m/s^2, with which somebody matches the tested car
-GRIP = 7.0  # m/s^2, the most sideways; a shorter change of lanes takes longer than its speed says
 SHARPEST = 2.0  # sideways nobody moves faster than the speed ahead divided by this
 FAST = 250.0 / 3.6  # m/s, the most that a scene can ask for
 BRAKE, STOP, CHANGE = 6.0, 3.0, 2.0  # m/s^2
+TURNING = 20.0 / 3.6  # m/s, of vehicles that turn at a junction, at most
 LATERAL: Mapping[What, float] = {
     "swerve": 0.5, "drift": 0.5, "cut_in": 1.5, "cut_out": 1.5, "change_lane": 1.0, "overtake": 1.5,
     "merge": 1.0, "pull_out": 1.0, "wrong_way": 1.0,
@@ -41,6 +41,13 @@ def pull_of(kind: ActorKind, speed: float) -> float:
     if kind in ("adult", "child"):
         return max(speed**2 / 2 / (RUNNING_PATH if speed > RUNS else PATH), 0.1)
     return PULL[kind]
+
+
+def starts(kind: ActorKind, n: Mapping[str, float], usual: float) -> tuple[float, float]:
+    """Returns the speed in m/s that somebody comes to from rest, and the acceleration in m/s^2, by the
+    numbers of an action; ``usual`` is the speed of which they say nothing."""
+    goal = n.get("to", usual)
+    return goal, abs(n.get("accel", pull_of(kind, goal)))
 
 
 class Car(NamedTuple):
@@ -130,16 +137,17 @@ class Act:
     held: tuple[float, float] | None = None
     """How far its middle is ahead of the tested car's at first, and how much faster it is, if it keeps to
     that until its first action."""
+    matches: bool = False
+    """Whether it comes to its meeting when the tested car does."""
     begun: int = 0
     phases: list[Phase] = field(default_factory=list)
     clock: float = 0.0
     pull: float = CHANGE
     slide: Slide | None = None
     slope: float = 0.0
-    is_late: bool = False
-    """Whether it no longer matches the tested car."""
 
     def __post_init__(self) -> None:
+        self.v = min(self.v, self.way.bend(self.s, self.t, self.forward)[1])
         self.goal, self.signs = self.v, dict[int, float]()
 
     @property
@@ -185,13 +193,13 @@ class Act:
             ahead, faster = self.held
             wanted = car.v + faster + (ahead + faster * time - (self.along - car.s)) / CATCH_UP
             self.goal, self.pull = min(max(wanted, 0.0), FAST), MATCHED
-        elif self.meeting and not self.waits:
+        elif self.matches:
             eta, self.goal, self.pull = self._eta(car), self.cruise, MATCHED
-            if eta > LAST and not self.is_late:
+            self.matches = eta > LAST
+            if self.matches and self.meeting:
                 missing = self.forward * (self.meeting.own - self.s) - self._planned(eta)
                 faster = math.copysign(min(abs(missing) / CATCH_UP, math.sqrt(4.0 * abs(missing))), missing)
                 self.goal = min(max(self.cruise + faster, 0.0), 1.5 * self.cruise)
-            self.is_late |= eta <= LAST
 
     def _eta(self, car: Car) -> float:
         """The seconds until the tested car is where they meet, at its speed now."""
@@ -225,15 +233,15 @@ class Act:
             return self._eta(car) - n["ttc"]
         if {"gap", "headway", "ttc"} & {*n}:
             return self._until(n, time, car)
+        before = 0.0 if not self.phases else self._left(car) if len(self.phases) == 1 else math.inf
+        if deed.what == "turn_off" and self.meeting:
+            room = self.meeting.own - self.s - (self.v**2 - n.get("to", TURNING) ** 2) / 2 / STOP
+            return max(before, room / max(self.v, 1e-3))
         if self.begun:
-            return 0.0 if not self.phases else self._left(car) if len(self.phases) == 1 else math.inf
+            return before
         if self.meeting and self.waits:
-            goal = n.get("to", self.cruise)
-            pull = abs(n.get("accel", pull_of(self.kind, goal)))
-            return self._eta(car) - time_over(self.forward * (self.meeting.own - self.s), goal, pull)
-        if self.meeting and deed.what == "turn_off":
-            room = self.meeting.own - self.s - (self.v**2 - n.get("to", 20 / 3.6) ** 2) / 2 / STOP
-            return room / max(self.v, 1e-3)
+            way = self.forward * (self.meeting.own - self.s)
+            return self._eta(car) - time_over(way, *starts(self.kind, n, self.cruise))
         return self._eta(car) - LAST if self.meeting else ROLL - time
 
     def _until(self, n: Mapping[str, float], time: float, car: Car) -> float:
@@ -331,7 +339,7 @@ class Act:
                 back = Phase(-(5 / 3.6 if to is None else to), 1.0, until="speed")
                 return [Phase(0.0, STOP, until="speed"), back, Phase(lasts=lasts or math.inf)]
             case "turn_off":
-                return [Phase(min(v, 20 / 3.6) if to is None else to, STOP, until="met")]
+                return [Phase(min(v, TURNING) if to is None else to, STOP, until="met")]
             case _:  # merge, turn_in, turn_across, cross, run_light, run_sign
                 goal = self.cruise if to is None else to
                 start = pull_of(self.kind, goal) if self.waits else CHANGE
@@ -395,9 +403,10 @@ class Act:
         self.v += math.copysign(self.pull * speeds_up, self.goal - self.v)
         if speeds_up < time:
             self.v = self.goal
+        stretch, fastest = self.way.bend(self.s, self.t, self.forward)
+        self.v = min(self.v, fastest)
         gone = (before + self.v) / 2 * speeds_up + self.v * (time - speeds_up)
-        if gone:
-            self.s += self.forward * gone / self.way.stretch(self.s, self.t)
+        self.s += self.forward * gone / stretch
         if self.slide is None:
             return
         self.slid += self._pace() * time

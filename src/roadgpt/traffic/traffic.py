@@ -128,7 +128,7 @@ def begin(
 
     Raises:
         PartError: no mover that the scene needs is installed.
-        UsageError: the file cannot be used."""
+        UsageError: the file cannot be used, or an actor of the scene cannot be, or act, on this road."""
     if isinstance(replay, str | Path):
         replay = read_recording(Path(replay)).on(road, world)
     scene = world.scene

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
 SPACING = 0.5  # m between the points of a way
+GRIP, EASE = 7.0, 3.0  # m/s^2: the most sideways in a bend, and with what actors slow down before it
+SMOOTHED = 9  # points that a curvature is averaged over
 LEAST_STRETCH = 0.2  # lower bound of the metres beside a way per metre of it, on the inside of a bend
 
 
@@ -49,9 +51,14 @@ class Way:
 
     @cached_property
     def _rows(self) -> list[list[float]]:
-        """The points with the curvature of the way there."""
-        bends = np.gradient(self.points[:, 3], self.stations)
-        rows: list[list[float]] = np.column_stack([self.points, bends]).tolist()
+        """The points with the curvature of the way there, and the square of the greatest speed, along the way
+        and against it, from which one still slows down for the bends."""
+        s, bends = self.stations, np.gradient(self.points[:, 3], self.stations)
+        padded = np.pad(np.abs(bends), SMOOTHED // 2, mode="edge")
+        fastest = GRIP / np.maximum(np.convolve(padded, np.full(SMOOTHED, 1 / SMOOTHED), "valid"), 1e-6)
+        along = np.minimum.accumulate((fastest + 2 * EASE * s)[::-1])[::-1] - 2 * EASE * s
+        against = np.minimum.accumulate(fastest - 2 * EASE * s) + 2 * EASE * s
+        rows: list[list[float]] = np.column_stack([self.points, bends, along, against]).tolist()
         return rows
 
     @cached_property
@@ -69,12 +76,14 @@ class Way:
     def pose(self, s: float, t: float = 0.0) -> tuple[float, float, float, float]:
         """Returns x, y, z and heading at a station, ``t`` metres to the left of the way. Before its begin
         and after its end it goes straight on."""
-        x, y, z, heading, _ = self._at(s)
+        x, y, z, heading, *_ = self._at(s)
         beyond = s - min(max(s, 0.0), self.length)
         cos, sin = math.cos(heading), math.sin(heading)
         return x + beyond * cos - t * sin, y + beyond * sin + t * cos, z, heading
 
-    def stretch(self, s: float, t: float) -> float:
-        """Returns how many metres somebody drives ``t`` metres to the left of the way per metre of it."""
-        bend = self._at(s)[4] if t and 0.0 < s < self.length else 0.0
-        return max(1.0 - bend * t, LEAST_STRETCH)
+    def bend(self, s: float, t: float, forward: int) -> tuple[float, float]:
+        """Returns how many metres somebody drives ``t`` metres to the left of the way per metre of it, and
+        the greatest speed there in m/s, along the way or, with ``forward`` -1, against it."""
+        *_, bend, along, against = self._at(s)
+        stretch = max(1.0 - bend * t, LEAST_STRETCH) if 0.0 < s < self.length else 1.0
+        return stretch, math.sqrt((along if forward > 0 else against) * stretch)

@@ -17,7 +17,19 @@ from roadgpt.check.measures import measure
 from roadgpt.errors import UsageError
 from roadgpt.plural import plural
 from roadgpt.road.road import START
-from roadgpt.traffic.acting import LAST, LATERAL, ROLL, Act, Car, Deed, Meeting, pull_of, reach, time_over
+from roadgpt.traffic.acting import (
+    LAST,
+    LATERAL,
+    ROLL,
+    TURNING,
+    Act,
+    Car,
+    Deed,
+    Meeting,
+    reach,
+    starts,
+    time_over,
+)
 from roadgpt.traffic.actor import SIZES, Actor, FloatArray, TestedCar, corners
 from roadgpt.traffic.places import offset_of, parked_rows, way_of
 from roadgpt.traffic.way import Way
@@ -31,7 +43,6 @@ SCALES: Mapping[str, float] = {
 }  # fmt: skip
 USUAL: Mapping[str, float] = {"adult": 5 / KMH, "child": 5 / KMH, "bicycle": 15 / KMH, "animal": 20 / KMH}
 """Speeds in m/s: those of Euro NCAP's persons (CPNA) and bicycle (CBNA); that of the animal is ours."""
-TURNING = 20 / KMH  # m/s, of vehicles that turn at a junction, at most
 CUT_IN = 10.0  # m, the gap at which one cuts in
 HEADWAY = 2.0  # s, of who is ahead
 BEHIND = 1.5  # s, of who is behind, and of several alike one behind another
@@ -39,8 +50,8 @@ STANDS = 2.0  # m between several alike that stand
 ONCOMING = 40.0  # m between several alike that come towards the tested car
 EASY = 4.0  # m/s^2, with which the tested car can stop before who stands or is slow
 INTO = 1.0  # s of headway with which one turns in or merges ahead of the tested car
-USUAL_AWAY = 6.0  # m from the tested car's path, of who crosses, as far as it matters for where
 NEAR = 10.0  # m before the meeting, where a vehicle waits at a junction
+PLACES = ("gap", "headway", "lead", "station")
 CROSSES: tuple[What, ...] = ("cross", "turn_in")
 
 
@@ -77,8 +88,10 @@ class Script:
             for copy in range(count):
                 rng = np.random.default_rng([stage.seed, number, copy])
                 one = _drawn(role, rng)
-                one = one.model_copy(update={"actions": tuple(_drawn(each, rng) for each in one.actions)})
-                self._cast.append((number, copy, one))
+                changed = {"actions": tuple(_drawn(each, rng) for each in one.actions)}
+                if copy:  # several alike are one behind another
+                    changed |= {field: getattr(self._cast[-1][2], field) for field in PLACES}
+                self._cast.append((number, copy, one.model_copy(update=changed)))
         first = self._station(min(START, stage.road.length / 2))
         self._place(Car(first, stage.world.first_speed, 0.0, *SIZES["car"][:2]))
         free = [act.way.points for act in self._acts if act.way is not self._way]
@@ -137,8 +150,7 @@ class Script:
         for number, copy, role in self._cast:
             same = [each for each in scene.actors[: number + 1] if each.kind == role.kind]
             name = (role.kind, str(len(same))) if copy == 0 else None
-            place = next(one for other, _, one in self._cast if other == number)
-            self._acts.append(_Placing(self, role, place, copy, ways, number).act(events, name))
+            self._acts.append(_Placing(self, role, number, copy, ways).act(events, name))
 
     def stretch(self, mark: Mark) -> tuple[float, float]:
         """Returns the first and the last station, along the tested car's lane, of a part of its route."""
@@ -166,21 +178,11 @@ class Script:
 class _Placing:
     """Where somebody of a scene is at first, and how it is made to meet the tested car."""
 
-    def __init__(
-        self, script: Script, role: Role, place: Role, copy: int, ways: dict[int, Way], number: int
-    ) -> None:
-        self.script, self.role, self.copy, self.car = script, role, copy, script._car
-        self.road, self.world = script._road, script._world
+    def __init__(self, script: Script, role: Role, number: int, copy: int, ways: dict[int, Way]) -> None:
+        self.script, self.role, self.number, self.copy, self.ways = script, role, number, copy, ways
+        self.road, self.world, self.car = script._road, script._world, script._car
         self.kind, self.where, self.side = role.kind, role.where, role.side
-        self.size, self.n = (
-            SIZES[role.kind],
-            _numbers(role)
-            | {
-                key: value
-                for key, value in _numbers(place).items()
-                if key in ("gap", "headway", "lead", "station")
-            },
-        )
+        self.size, self.n = SIZES[role.kind], _numbers(role)
         self.half = (self.size.length + self.car.length) / 2
         self.limit = self.world.limits.speed_limit
         self.deeds = [self._deed(action) for action in role.actions]
@@ -198,7 +200,6 @@ class _Placing:
         self.forward = 1
         if self.is_along and (self.where == "oncoming" or self.first == "wrong_way"):
             self.forward = -1
-        self.ways, self.number = ways, number
         self.kerb = self.world.profile_of(self.road).side
         self.cruise = self._cruise()
         self.stands = (
@@ -264,6 +265,7 @@ class _Placing:
         act = Act(
             self.kind, self.where, self.size, self.deeds, way, self.forward, shift, s, t, v, self.cruise,
             self.limit, self._leads_to, events, name, meeting, v == 0 and not self.is_along, held,
+            bool(meeting and v and not self.turns_off),
         )  # fmt: skip
         if self.copy and self.crosses and meeting:
             aside = math.sin(self.script._way.pose(meeting.car)[3] - way.pose(meeting.own)[3])
@@ -275,6 +277,8 @@ class _Placing:
         return f"the {self.kind.replace('_', ' ')} {self.where.replace('lane', 'in the next lane')}"
 
     def _check(self, act: Act) -> None:
+        if self.is_along and self.forward < 0 and act.s < 0:
+            raise UsageError(f"{self._one()} drives away before it is on the road; give another place")
         if act.v == 0 and not act.waits and act.state() is None:
             raise UsageError(
                 f"{self._one()} would stand at {act.along:.0f} m, but the road is {self.road.length:.0f} m "
@@ -298,25 +302,29 @@ class _Placing:
                 self._leads_to(act, deed)
 
     def _own_way(self) -> Way:
+        """Returns the way of somebody who does not stay along the tested car's lane: to where the tested car
+        is when it has rolled for long enough, or to the place that the scene says."""
         if self.number not in self.ways:
-            lasts = LAST
-            if self.where in ("crossing", "beside"):
-                own = time_over(self.n.get("away", USUAL_AWAY), self.cruise, pull_of(self.kind, self.cruise))
-                lasts = max(ROLL + HEADWAY, own + 1.0)
-            near = self.car.s + self.half + self.car.v * lasts
-            if self.role.at:
-                first, last = self.script.stretch(self.role.at)
-                near = {"after": last, "in": first, "before": first - EASY * self.car.v}[self.role.at.word]
-            near = self.n.get("station", near)
             role, cue = self.role, self.deeds[0].n if self.deeds else {}
             if self.crosses and "ttc" in cue and role.away is None:
-                goal = cue.get("to", self.cruise)
-                away = reach(cue["ttc"], 0.0, goal, abs(cue.get("accel", pull_of(self.kind, goal))))
+                away = reach(cue["ttc"], 0.0, *starts(self.kind, cue, self.cruise))
                 role = role.model_copy(update={"away": exactly(min(away, 60.0))})
-            self.ways[self.number] = way_of(
-                role, self.script._road_station(max(near, 0.0)), self.road, self.world
-            )
+            near = self.car.s + self.half + self.car.v * (ROLL + HEADWAY if self.crosses else LAST)
+            if role.at:
+                first, last = self.script.stretch(role.at)
+                near = {"after": last, "in": first, "before": first - EASY * self.car.v}[role.at.word]
+            near = self.n.get("station", near)
+            way = self._way_from(role, near)
+            if self.crosses and way.meets and "station" not in self.n and not role.at:
+                path = way.meets[0] + self.car.width / 2
+                lasts = 1.0 + time_over(path, *starts(self.kind, cue, self.cruise))
+                later = self.car.s + self.half + self.car.v * lasts
+                way = self._way_from(role, later) if later > near else way
+            self.ways[self.number] = way
         return self.ways[self.number]
+
+    def _way_from(self, role: Role, near: float) -> Way:
+        return way_of(role, self.script._road_station(max(near, 0.0)), self.road, self.world)
 
     def _crossing(self, met: Meeting, v: float) -> tuple[Meeting, float]:
         """Returns the meeting of somebody who comes along another way, and the station where it is at first.
