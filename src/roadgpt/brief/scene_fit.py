@@ -57,43 +57,14 @@ def fitted(brief: Brief, scene: Scene, limit: float) -> Brief:
     return brief.model_copy(update={"stretches": (first, *others), "junctions": tuple(junctions)})
 
 
-def needs(asked: Brief, found: Brief) -> str:
-    """Returns a sentence on what ``fitted`` added to a Brief; empty if that is nothing."""
-    pairs = zip(asked.stretches or (asked,), found.stretches or (found,), strict=True)
-    said: list[str] = []
-    for before, road in pairs:
-        said += (
-            [f"{road.lanes.lo:g} lanes in its direction"] if road.lanes and road.lanes != before.lanes else []
-        )
-        said += [f"a road of {road.length} metres"] if road.length and road.length != before.length else []
-        if road.radius != before.radius or [c.radius for c in road.clauses] != [
-            c.radius for c in before.clauses
-        ]:
-            said.append("wide bends")
-        if road.clauses[:1] != before.clauses[:1] and road.clauses[0].kind == "straight":
-            said.append(f"a first straight of {road.clauses[0].length} metres")
-    for old, new in zip(asked.junctions, found.junctions, strict=True):
-        said += [f"to go {new.take} at the junction"] * (new.take != old.take)
-        said += ["traffic lights"] * (new.control != old.control)
-    return f"the scene needs {', '.join(said)}; the road gets that" if said else ""
-
-
 def _until_stop(scene: Scene, speed: float) -> float:
     """Returns how far the tested car comes until everything has happened, in metres."""
     seconds = max([ROLLS, *(_lasts(role, speed) for role in scene.actors)])
-    marks = [(*role_marks(role),) for role in scene.actors]
-    far = max(
-        [0.0, *(each for some in marks for each in some), *(_most(each.station) for each in scene.slippery)]
-    )
-    return max(seconds * speed, far) + SPARE
-
-
-def role_marks(role: Role) -> Iterator[float]:
-    """Yields how far along the road somebody is named to be."""
-    yield _most(role.station)
-    yield from (_most(each.station) for each in role.actions)
-    if role.where == "oncoming":
-        yield _most(role.gap)
+    roles = scene.actors
+    named = [role.station for role in roles] + [each.station for role in roles for each in role.actions]
+    named += [role.gap for role in roles if role.where == "oncoming"]
+    named += [each.station for each in scene.slippery]
+    return max(seconds * speed, *map(_most, named), 0.0) + SPARE
 
 
 def _most(amount: Amount | None) -> float:
