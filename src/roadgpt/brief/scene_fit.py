@@ -11,7 +11,7 @@ from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
 from roadgpt.brief.model import Brief, Clause, span
 from roadgpt.brief.outline import outline
 from roadgpt.brief.ranges import Range
-from roadgpt.brief.scene import FLOWS, LEAVES, Action, Role, Scene
+from roadgpt.brief.scene import ACROSS, FLOWS, LEAVES, Action, Role, Scene
 from roadgpt.errors import BriefError
 
 ROLLS = 4.0  # s at speed before anything happens
@@ -41,16 +41,15 @@ def fitted(brief: Brief, scene: Scene, limit: float) -> Brief:
     if at_junction and places:
         before = ROLLS * speed + SPARE
         junctions[junctions.index(places[0])] = _with_way(places[0], scene)
-    else:  # what is longer than the first road happens on those straight behind it
+    else:  # the car goes on straight where it can, and what is longer than the first road happens there
         before += stop
-        left = before - _length(first).hi
+        is_open = not any(role.at for role in scene.actors)
         for n, (place, road) in enumerate(zip(brief.junctions, others, strict=True)):
-            if left > 0 and place.take is None and place in places:
+            if is_open and place.take is None and place.kind in ("t_junction", "crossroads"):
                 junctions[n] = place.model_copy(update={"take": "straight"})
             is_straight = junctions[n].take in ("straight", "main") and place.kind != "roundabout"
             if not (is_straight or place.kind in LANE_KINDS):
                 break
-            left -= _length(road).hi + JUNCTION
             before -= min(_length(road).hi + JUNCTION, before)
     first = _wide_enough(_drivable(first, before - stop, speed, is_said), scene)
     first = _long_enough(first, before, speed, is_said)
@@ -78,6 +77,9 @@ def _lasts(role: Role, speed: float) -> float:
     closing = speed + own if role.where == "oncoming" else speed - own
     gap = _most(role.gap) or _most(role.lead) or _most(role.headway) * speed
     meets = gap / closing if closing > 1.0 and role.where in ("ahead", "lane", "far", "oncoming") else 0.0
+    if role.where in ACROSS and own > 0:
+        rates = [abs(_most(each.accel)) for each in role.actions if each.accel]
+        meets = _most(role.away) / own + sum(own / 2 / rate for rate in rates if rate)
     lasts, now = max((_most(each.time) for each in role.actions), default=0.0) or ROLLS, own
     for action in role.actions:
         seconds, now = _takes(action, now)
