@@ -27,7 +27,8 @@ from roadgpt.run import Run, Setup, perform
 from roadgpt.run.exporting import export
 
 TRUTHS = Path(__file__).resolve().parents[1] / "tests" / "traffic"
-ANYWHERE = ("kind", "where", "does", "n")
+RATES = ("does", "decel", "accel")
+ANYWHERE = ("kind", "where", "does", "n", "decel", "accel", "collides")
 """The keys of an actor that hold on any road."""
 
 
@@ -52,7 +53,9 @@ def anywhere(truth: dict[str, Any]) -> dict[str, Any]:
     actors = []
     for each in truth.get("actors", ()):
         does = each["does"] if isinstance(each["does"], list) else [each["does"]]
-        plain = [one["does"] if isinstance(one, dict) else one for one in does]
+        plain = [
+            {key: one[key] for key in RATES if key in one} if isinstance(one, dict) else one for one in does
+        ]
         actors.append({**{key: each[key] for key in ANYWHERE if key in each}, "does": plain})
     found = {key: truth[key] for key in ("sound", "conditions", "flow") if key in truth}
     return found | ({"actors": actors} if actors else {})

@@ -11,7 +11,7 @@ from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
 from roadgpt.brief.model import Brief, Clause, span
 from roadgpt.brief.outline import outline
 from roadgpt.brief.ranges import Range
-from roadgpt.brief.scene import FLOWS, LEAVES, Action, Role, Scene
+from roadgpt.brief.scene import ACROSS, FLOWS, LEAVES, Action, Role, Scene
 from roadgpt.errors import BriefError
 
 ROLLS = 4.0  # s at speed before anything happens
@@ -24,14 +24,16 @@ KMH = 3.6
 
 def fitted(brief: Brief, scene: Scene, limit: float) -> Brief:
     """Returns the Brief together with what a scene needs of its road and the Brief leaves open; ``limit`` is
-    the speed limit in m/s. Raises BriefError if the Brief excludes it."""
+    the speed limit in m/s. Raises BriefError if the Brief excludes it. Where the scene does not say the speed
+    of the tested car, the Brief excludes no length and no bend: the car then begins as fast as it can."""
     check_scene(scene, brief)
     if brief.map is not None or not (scene.actors or scene.speed or scene.slippery or scene.turn):
         return brief
     speed = (max(scene.speed.lo or 0.0, scene.speed.hi or 0.0) / KMH) if scene.speed else limit
-    before, stop = _until_stop(scene, speed), speed**2 / 2 / STOPS
+    before, stop, is_said = _until_stop(scene, speed), speed**2 / 2 / STOPS, scene.speed is not None
     if not brief.stretches:
-        return _long_enough(_wide_enough(_drivable(brief, before, speed), scene), before + stop, speed)
+        road = _wide_enough(_drivable(brief, before, speed, is_said), scene)
+        return _long_enough(road, before + stop, speed, is_said)
     places = [place for place in brief.junctions if place.kind not in (*LANE_KINDS, *RAMPS)]
     at_junction = bool(scene.turn) or any(role.where in ("junction", "roundabout") for role in scene.actors)
     first, *others = brief.stretches
@@ -39,58 +41,29 @@ def fitted(brief: Brief, scene: Scene, limit: float) -> Brief:
     if at_junction and places:
         before = ROLLS * speed + SPARE
         junctions[junctions.index(places[0])] = _with_way(places[0], scene)
-    else:  # what is longer than the first road happens on those straight behind it
+    else:  # the car goes on straight where it can, and what is longer than the first road happens there
         before += stop
-        left = before - _length(first).hi
+        is_open = not any(role.at for role in scene.actors)
         for n, (place, road) in enumerate(zip(brief.junctions, others, strict=True)):
-            if left > 0 and place.take is None and place in places:
+            if is_open and place.take is None and place.kind in ("t_junction", "crossroads"):
                 junctions[n] = place.model_copy(update={"take": "straight"})
             is_straight = junctions[n].take in ("straight", "main") and place.kind != "roundabout"
             if not (is_straight or place.kind in LANE_KINDS):
                 break
-            left -= _length(road).hi + JUNCTION
             before -= min(_length(road).hi + JUNCTION, before)
-    first = _long_enough(_wide_enough(_drivable(first, before - stop, speed), scene), before, speed)
+    first = _wide_enough(_drivable(first, before - stop, speed, is_said), scene)
+    first = _long_enough(first, before, speed, is_said)
     return brief.model_copy(update={"stretches": (first, *others), "junctions": tuple(junctions)})
-
-
-def needs(asked: Brief, found: Brief) -> str:
-    """Returns a sentence on what ``fitted`` added to a Brief; empty if that is nothing."""
-    pairs = zip(asked.stretches or (asked,), found.stretches or (found,), strict=True)
-    said: list[str] = []
-    for before, road in pairs:
-        said += (
-            [f"{road.lanes.lo:g} lanes in its direction"] if road.lanes and road.lanes != before.lanes else []
-        )
-        said += [f"a road of {road.length} metres"] if road.length and road.length != before.length else []
-        if road.radius != before.radius or [c.radius for c in road.clauses] != [
-            c.radius for c in before.clauses
-        ]:
-            said.append("wide bends")
-        if road.clauses[:1] != before.clauses[:1] and road.clauses[0].kind == "straight":
-            said.append(f"a first straight of {road.clauses[0].length} metres")
-    for old, new in zip(asked.junctions, found.junctions, strict=True):
-        said += [f"to go {new.take} at the junction"] * (new.take != old.take)
-        said += ["traffic lights"] * (new.control != old.control)
-    return f"the scene needs {', '.join(said)}; the road gets that" if said else ""
 
 
 def _until_stop(scene: Scene, speed: float) -> float:
     """Returns how far the tested car comes until everything has happened, in metres."""
     seconds = max([ROLLS, *(_lasts(role, speed) for role in scene.actors)])
-    marks = [(*role_marks(role),) for role in scene.actors]
-    far = max(
-        [0.0, *(each for some in marks for each in some), *(_most(each.station) for each in scene.slippery)]
-    )
-    return max(seconds * speed, far) + SPARE
-
-
-def role_marks(role: Role) -> Iterator[float]:
-    """Yields how far along the road somebody is named to be."""
-    yield _most(role.station)
-    yield from (_most(each.station) for each in role.actions)
-    if role.where == "oncoming":
-        yield _most(role.gap)
+    roles = scene.actors
+    named = [role.station for role in roles] + [each.station for role in roles for each in role.actions]
+    named += [role.gap for role in roles if role.where == "oncoming"]
+    named += [each.station for each in scene.slippery]
+    return max(seconds * speed, *map(_most, named), 0.0) + SPARE
 
 
 def _most(amount: Amount | None) -> float:
@@ -104,6 +77,9 @@ def _lasts(role: Role, speed: float) -> float:
     closing = speed + own if role.where == "oncoming" else speed - own
     gap = _most(role.gap) or _most(role.lead) or _most(role.headway) * speed
     meets = gap / closing if closing > 1.0 and role.where in ("ahead", "lane", "far", "oncoming") else 0.0
+    if role.where in ACROSS and own > 0:
+        rates = [abs(_most(each.accel)) for each in role.actions if each.accel]
+        meets = _most(role.away) / own + sum(own / 2 / rate for rate in rates if rate)
     lasts, now = max((_most(each.time) for each in role.actions), default=0.0) or ROLLS, own
     for action in role.actions:
         seconds, now = _takes(action, now)
@@ -158,9 +134,11 @@ def _length(road: Brief) -> Range:
     )
 
 
-def _long_enough(road: Brief, metres: float, speed: float) -> Brief:
+def _long_enough(road: Brief, metres: float, speed: float, is_said: bool) -> Brief:
     have, metres = _length(road), float(ceil(metres / 10) * 10)
     if have.hi < metres:
+        if not is_said:
+            return road
         raise BriefError(
             f"at {KMH * speed:.0f} km/h the scene needs {metres:.0f} m of road to begin, to happen and to"
             f" stop, and {have.hi:g} m are asked for; ask for a longer road, or for a slower car"
@@ -170,7 +148,7 @@ def _long_enough(road: Brief, metres: float, speed: float) -> Brief:
     return road.model_copy(update={"length": Amount(lo=metres, hi=road.length and road.length.hi)})
 
 
-def _drivable(road: Brief, metres: float, speed: float) -> Brief:
+def _drivable(road: Brief, metres: float, speed: float, is_said: bool) -> Brief:
     """Asks for bends that the tested car can drive at its speed, or else for a straight before them."""
     radius, metres = float(ceil(speed**2 / ASIDE)), float(ceil(metres))
     turns = [each for each in road.clauses if each.kind not in ("straight", "crest", "dip")]
@@ -197,6 +175,8 @@ def _drivable(road: Brief, metres: float, speed: float) -> Brief:
         return road
     straight = Clause(kind="straight", length=at_least(metres))
     if lengths.hi < metres or (road.starts and road.starts.kind != "straight"):
+        if not is_said:
+            return road
         raise BriefError(
             f"at {KMH * speed:.0f} km/h the tested car needs {metres:.0f} m before bends of less than"
             f" {radius:.0f} m radius, and the words leave less; ask for wider bends, or for a slower car"

@@ -5,9 +5,9 @@ from collections.abc import Iterator
 
 from roadgpt.brief.beside import surface_remark
 from roadgpt.brief.model import Brief
-from roadgpt.brief.plan import scene_plan
+from roadgpt.brief.plan import plan, scene_plan
 from roadgpt.brief.scene import Scene, scene_text
-from roadgpt.brief.scene_fit import fitted, needs
+from roadgpt.brief.scene_fit import fitted
 from roadgpt.design.road_search import sufficient_map
 from roadgpt.road import World
 from roadgpt.road.world import KMH, Limits
@@ -66,7 +66,8 @@ def lane_remarks(brief: Brief, found: World) -> Iterator[str]:
 
 def need_remark(brief: Brief, found: World) -> str:
     """Returns a sentence on what the scene needs of the road and the words leave open; empty if nothing."""
-    return needs(brief, fitted(brief, found.scene, found.first_speed))
+    asked = fitted(brief, found.scene, found.first_speed)
+    return "" if asked == brief else f"the scene needs more than the words say: {plan(asked)}"
 
 
 def scene_remark(brief: Brief, found: World) -> str:

@@ -149,11 +149,7 @@ class Parts(Frozen):
         description="Reads the description: model (neural networks), chat (a language model), plan (plans "
         "only).",
     )
-    designer: str = Field(
-        "planner",
-        description="Designs roads: planner (a search), or thesis (a language model, as in RoadGPT's "
-        "thesis).",
-    )
+    designer: str = Field("planner", description="planner, or thesis (a language model).")
     rules: Literal["strict", "sbft"] = Field(
         "strict", json_schema_extra=RARE,
         description="Which rules a road must satisfy: RoadGPT's own (strict), or those of the SBFT tool "
@@ -170,7 +166,7 @@ class Parts(Frozen):
         False, description="Continue to the end after the car leaves its lane.", json_schema_extra=DRIVE
     )
     scenario: str = Field(
-        "", description="A scenario of the catalogue: ncap:CCRb, 'r157:cut_in slower=30'.",
+        "", description="One of roadgpt scenarios: 'r157:cut_in slower=30'.",
         json_schema_extra=DRIVE,
     )  # fmt: skip
     tracks: str = Field(

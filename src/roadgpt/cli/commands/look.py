@@ -334,7 +334,8 @@ def scenarios(names: tuple[str, ...], as_json: bool) -> None:
         rows = [("", each.says)]
         if names:
             rows += [("source", each.source), ("scene", each.scene_text), ("road", each.plan)]
-            rows += [(f"{name}={value}", each.parameters[name][1]) for name, value in each.values.items()]
+            known = each.parameters
+            rows += [(f"{name}={value}", known[name][1] or "a word") for name, value in each.values.items()]
             for block in each.grid:
                 lists = (f"{name} {' '.join(map(str, values))}" for name, values in block.items())
                 rows.append(("grid", "; ".join(lists)))

@@ -62,8 +62,7 @@ def run(
     \b
     roadgpt run "an uphill road with 3 turns" -n 5
     roadgpt run "two hairpins, then a straight" -n 20 --seed 7 --friction 0.6
-    roadgpt run "a winding road" --reader chat --max-cost 0.50
-    roadgpt run --scenario "r157:cut_in slower=30"
+    roadgpt run "a winding road" --scenario "r157:cut_in slower=30"
 
     \b
     Exit status (roads finished before an error are saved in full):

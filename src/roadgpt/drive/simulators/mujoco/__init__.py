@@ -31,6 +31,20 @@ _SEEN = itemgetter(
 )
 
 
+EASY = 3.0  # m/s^2, with which a car slows down for a bend, and that it takes sideways there
+
+
+def _first_speed(road: "Road", world: "World", start: float) -> float:
+    """Returns the speed in m/s at which the car starts to roll. Where the scene does not say it, it is at
+    most that from which the car slows down without effort for the bends behind ``start``."""
+    speed = world.first_speed
+    if world.scene.speed is not None:
+        return speed
+    away = np.arange(0.0, min(speed**2 / 2 / EASY, road.length - start), 1.0)
+    bends = np.abs(road.curvature(start + away))
+    return float(np.sqrt((EASY / np.maximum(bends, 1e-6) + 2 * EASY * away).min(initial=speed**2)))
+
+
 class MujocoSimulator:
     """Simulates a saloon car in steps of 2 ms; the driver returns a command every 20 ms."""
 
@@ -64,7 +78,7 @@ class MujocoSimulator:
         guard.start(road, world, seed)
         middle = float(world.profile_of(road).middle(monitor.start))
         rolls = traffic is not None or world.scene.speed is not None
-        speed = world.first_speed if rolls else 0.0
+        speed = _first_speed(road, world, monitor.start) if rolls else 0.0
         vehicle.put(monitor.start, middle + self.start_offset, speed)
         rows, step = [vehicle.row.tobytes()], 0
         while True:

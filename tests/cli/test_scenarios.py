@@ -1,0 +1,87 @@
+"""The catalogue of scenarios on the command line: listed, run and tested in campaigns."""
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+from command_line import invoke, roadgpt
+from roadgpt.brief.plan import read_scene
+from roadgpt.brief.scenarios import scenarios
+from roadgpt.run import read_run
+
+CRAWL = "ncap:CCRs ego=10"
+"""The quickest of all."""
+
+
+@pytest.fixture(autouse=True)
+def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def test_the_list_has_every_scenario_on_a_screen_of_80_columns() -> None:
+    said = roadgpt("scenarios").output
+    assert all(f"  {name}\n" in said for name in scenarios())
+    assert max(map(len, said.splitlines())) <= 80
+    rows = [
+        json.loads(line)
+        for line in roadgpt("scenarios", "ncap:*", "r157:cut_in", "--json").output.splitlines()
+    ]
+    assert len(rows) == 19
+    assert rows[-1]["parameters"]["gap"][0] == rows[-1]["values"]["gap"] == 30
+    whole = roadgpt("scenarios", "r157:cut_in").output
+    assert max(map(len, whole.splitlines())) <= 80
+    assert all(f"{name}=" in whole for name in rows[-1]["parameters"])
+
+
+def test_a_run_needs_words_or_a_scenario_and_repeats_with_both() -> None:
+    assert invoke("run", "--no-drive").exit_code == 2
+    roadgpt(
+        "run", "--scenario", "r157:cut_in slower=30", "--no-drive", "--no-plot", "--seed", 3, "--out", "a"
+    )
+    run = read_run(Path("a/runs/0001"))
+    assert run.request.setup.scenario == "r157:cut_in slower=30"
+    assert run.world.scene == read_scene("ego v=60; car lane right gap=67.5 v=30: cut_in 2 accel=0 gap=30")
+    assert run.world.section.lane_width == 3.5
+    again = roadgpt("show", "a/runs/0001").output
+    assert "--scenario 'r157:cut_in slower=30'" in again
+
+
+def test_a_scenario_and_a_scene_are_merged_or_refused() -> None:
+    roadgpt("run", "--scenario", CRAWL, "--scene", "light; night", "--no-drive", "--no-plot", "--out", "a")
+    scene = read_run(Path("a/runs/0001")).world.scene
+    assert (scene.flow, scene.light, len(scene.actors)) == ("light", "night", 1)
+    refused = invoke("run", "--scenario", CRAWL, "--scene", "truck ahead", "--no-drive")
+    assert refused.exit_code == 2
+    assert "contradict each other" in refused.stderr
+
+
+def test_a_campaign_tests_scenarios_and_counts_refused_ones_apart() -> None:
+    named = f"{CRAWL},r157:cut_out_fully_blocking"
+    done = roadgpt(
+        "campaign", "--plan", "straight | lanes=1", "--scenario", named, "--out", "c", "--driver", "robot"
+    )
+    assert "refused" in done.output
+    first, second = csv.DictReader(Path("c/results.csv").read_text().splitlines())
+    assert (first["origin"], first["outcome"], first["cause"]) == (CRAWL, "FAIL", "collision")
+    assert (second["outcome"], second["description"][:9]) == ("INVALID", "refused: ")
+    told = json.loads(roadgpt("show", "c", "--json").output)
+    assert told["scenarios"] == {
+        "ncap:CCRs": {"FAIL": 1}, "r157:cut_out_fully_blocking": {"refused": 1},
+    }  # fmt: skip
+    assert read_run_again("c", 1) == first["description"]
+
+
+def read_run_again(folder: str, number: int) -> str:
+    line = roadgpt("drive", "--again", folder, number, "--no-plot").output.splitlines()[-1]
+    return line.split("  ", 2)[-1].strip().split("  ")[-1]
+
+
+def test_a_plan_of_a_campaign_has_the_points_of_a_standard_grid() -> None:
+    Path("p.toml").write_text(
+        'drive = false\ntests = 4\nsettings = { scenario = "r157:free_driving", grid = "standard" }\n'
+    )
+    roadgpt("campaign", "p.toml", "--out", "c", "-q")
+    origins = [row["origin"] for row in csv.DictReader(Path("c/results.csv").read_text().splitlines())]
+    assert origins == [f"r157:free_driving ego={speed}" for speed in (5, 10, 15, 20)]
