@@ -254,15 +254,18 @@ def _has_room(
     ahead: float, entries: FloatArray, count: int,
 ) -> bool:  # fmt: skip
     """Returns whether a vehicle finds room behind lane ``k`` of its way, so that it does not stand in the
-    junction: also if all who are there, or have a grant to come there, queue before the next junction."""
+    junction: also if all who are there, or have a grant to come there, queue before the next junction;
+    and also for who has waited longer, and too long."""
     needed, far = numbers[i, LENGTH] + JAM, 0.0
     there = ways[i, min(k + 1, whole[i, LAST] - 1)]
     if lanes.onward_of[there] < lanes.onward_of[there + 1]:
         queue = 0.0
         for j in range(present):
             if j != i and (whole[j, STATE] == DRIVES or whole[j, STATE] == STANDS_HIT):
-                last = min(max(whole[j, AT], whole[j, GRANTED] + 1), whole[j, LAST] - 1)
-                for q in range(whole[j, AT], last + 1):
+                last = max(whole[j, AT], whole[j, GRANTED] + 1)
+                if numbers[j, WAIT] > max(numbers[i, WAIT], PATIENCE):  # else cars leave no room for a bus
+                    last = max(last, whole[j, AT] + 2)
+                for q in range(whole[j, AT], min(last, whole[j, LAST] - 1) + 1):
                     if ways[j, q] == there:
                         queue += numbers[j, LENGTH] + JAM
         if queue > 0.0 and queue + needed > lanes.stop[there]:
