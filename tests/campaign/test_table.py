@@ -86,6 +86,7 @@ def test_cells_count_what_the_results_say(tmp_path: Path) -> None:
         "valid": "7",
         "passed": "3",
         "failed": "3",
+        "unavoidable": "0",
         "invalid": "2",
         "in_error": "1",
         "not_driven": "1",

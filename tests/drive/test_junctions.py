@@ -144,7 +144,7 @@ def test_lines_in_junctions_keep_one_and_a_half_metres_from_the_edges() -> None:
     assert np.abs(np.diff(kept)).max() < 0.2  # without jumps
     single = Road.through([[0, 0], [50, 0], [100, 0]])
     assert kept_in_lane(single, WORLD, s, line, line) is line
-    assert highest_speeds(single, None) is None  # type: ignore[arg-type]
+    assert highest_speeds(single, WORLD, None) is None  # type: ignore[arg-type]
 
 
 def designed(plan: str, left_hand: bool = False) -> tuple[Route, World]:
@@ -178,7 +178,7 @@ def test_they_do_not_crawl_through_a_ring_of_16_m(leave: int) -> None:
 def test_speeds_before_a_junction_fall_no_faster_than_asked() -> None:
     way = route(ROUND)
     line = line_along(way, -2.0)
-    free, eased = highest_speeds(way, line), highest_speeds(way, line, 3.4)
+    free, eased = highest_speeds(way, WORLD, line), highest_speeds(way, WORLD, line, 3.4)
     assert free is not None
     assert eased is not None
     squares, lengths = np.square(eased), line.step * np.array(line.stretch[:-1])

@@ -12,7 +12,7 @@ import pytest
 import shapely
 
 from roadgpt.drive import Command, Drive, View, simulate
-from roadgpt.drive.company import look_around
+from roadgpt.drive.company import in_sight, look_around
 from roadgpt.drive.drive_monitor import DriveMonitor
 from roadgpt.errors import UsageError
 from roadgpt.road import Limits, Road, World
@@ -63,8 +63,8 @@ def test_boxes_touch_where_shapely_says_so_and_the_nearest_come_first() -> None:
         states[:, 0] *= rng.choice([1, 1, 30], n)
         states[rng.random(n) < 0.1] = np.nan
         car = np.array([1.0, -2.0, 0.0, rng.uniform(-9, 9), 4.7, 1.86])
-        sizes, order = np.array([SIZES[kind][:2] for kind in kinds]), np.zeros(n, np.int64)
-        count, touches = look_around(states, sizes, car, order, np.zeros((n, 4)))
+        looks, order = np.array([(*SIZES[kind][:2], 1, 200) for kind in kinds], float), np.zeros(n, np.int64)
+        count, touches = look_around(states, looks, car, order, np.zeros((n, 7)))
         box = shapely.Polygon(
             corners(np.array([*car[:4], 0.0]), SIZES["car"]._replace(length=4.7, width=1.86))
         )
@@ -249,3 +249,74 @@ def test_a_simulator_without_others_refuses_them() -> None:
         simulate(ROAD, WORLD, "reference", simulator=Lonely(), replay=tracks(("car", 1, 2, 0, 0)))
     with pytest.raises(UsageError, match="cannot move others"):
         simulate(ROAD, WORLD, "reference", simulator="beamng", replay=tracks(("car", 1, 2, 0, 0)))
+
+
+def seen_by_samples(eye: np.ndarray, boxes: list[np.ndarray], k: int, spare: float) -> bool:
+    """Whether a line from the eye to the top of box ``k``, at its middle or a corner, passes all other boxes,
+    which are ``spare`` metres larger on all sides; tried at many points of the line."""
+    for point in [
+        boxes[k][:2],
+        *corners(boxes[k], SIZES["car"]._replace(length=boxes[k][5], width=boxes[k][6])),
+    ]:
+        share = np.linspace(0, 1, 4001)[:, None]
+        line = eye + share * (np.array([*point, boxes[k][2] + boxes[k][7]]) - eye)
+        is_free = True
+        for m, box in enumerate(boxes):
+            c, s = np.cos(box[3]), np.sin(box[3])
+            dx, dy = line[:, 0] - box[0], line[:, 1] - box[1]
+            inside = (np.abs(dx * c + dy * s) < box[5] / 2 + spare) & (
+                np.abs(dy * c - dx * s) < box[6] / 2 + spare
+            )
+            inside &= (line[:, 2] > box[2] - spare) & (line[:, 2] < box[2] + box[7] + spare)
+            is_free = is_free and (m == k or not inside.any())
+        if is_free:
+            return True
+    return False
+
+
+def in_view(eye: np.ndarray, boxes: np.ndarray, road: np.ndarray, reach: float = 200.0) -> set[int]:
+    order = np.argsort(np.hypot(*(boxes[:, :2] - eye[:2]).T))
+    seen = np.ascontiguousarray(boxes[order, :4])
+    kept = in_sight(boxes[:, :5], boxes[:, 5:], eye, road, order, seen, len(boxes), reach)
+    np.testing.assert_array_equal(seen[:kept, :2], boxes[order[:kept], :2])
+    far = np.hypot(*(boxes[order[:kept], :2] - eye[:2]).T)
+    assert (np.diff(far) >= 0).all()
+    return set(order[:kept].tolist())
+
+
+def test_boxes_hide_what_is_lower_behind_them() -> None:
+    rng, eye, none, hidden = np.random.default_rng(3), np.array([1.0, -2.0, 1.2]), np.empty((0, 3)), 0
+    for _ in range(60):
+        n = int(rng.integers(2, 9))
+        sizes = np.array([SIZES[kind] for kind in rng.choice([*SIZES], n)])
+        boxes = np.column_stack(
+            [
+                rng.uniform(3, 40, n),
+                rng.uniform(-9, 9, n),
+                np.zeros(n),
+                rng.uniform(-9, 9, n),
+                np.zeros(n),
+                sizes,
+            ]
+        )
+        found = in_view(eye, boxes, none)
+        for k in range(n):
+            surely, perhaps = (seen_by_samples(eye, [*boxes], k, spare) for spare in (0.02, -0.02))
+            assert not surely or k in found
+            assert perhaps or k not in found
+        hidden += n - len(found)
+    assert hidden > 40
+
+
+def test_a_crest_hides_who_is_low_behind_it_and_nobody_is_seen_beyond_the_reach() -> None:
+    eye = np.array([0.0, 0.0, 1.2])
+    x = np.arange(-200.0, 205.0, 5.0)
+    road = np.column_stack([x, 0 * x, -(x**2) / 2000.0])  # a crest of 1,000 m, on which the car stands
+    # the line that touches a parabola of radius R from h above it is sqrt(2 R h) long
+    for kind in ("adult", "car", "truck", "lost_load"):
+        farthest = np.sqrt(2000 * 1.2) + np.sqrt(2000 * SIZES[kind].height)
+        for at, expected in ((farthest - 6, True), (farthest + 6, False)):
+            box = np.array([[at, 0, -(at**2) / 2000, 0, 0, *SIZES[kind]]])
+            assert (in_view(eye, box, road) == {0}) is expected
+            assert in_view(eye, box, road + [0, 30, 0]) == {0}  # a road elsewhere hides nobody
+            assert in_view(eye, box, road, at - 1) == set()

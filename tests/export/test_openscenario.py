@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from exported import ROADS, WORLD, asam_says, drive
-from roadgpt.export import Poses, save
+from roadgpt.export import Others, Poses, save
 from roadgpt.road import Road, World
 
 REAR_AXLE, GRAVITY_HEIGHT = -1.47, 0.56  # m, of the simulator's car
@@ -189,3 +189,44 @@ def test_the_environment_is_that_of_the_scene_and_asams_checker_agrees(tmp_path:
         heading = float(next(root.iter("WorldPosition")).attrib["h"])
         ahead = math.cos(heading), math.sin(heading)
         assert (math.sin(azimuth), math.cos(azimuth)) == pytest.approx(ahead, abs=0.03)
+
+
+def kept_by_esmini(time: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The vertices that esmini 3.6 leaves of a trajectory of more than two (PolyLineShape::FinalizeVertices):
+    of those within 0.1 m of one that it kept, none; after more than 1 s the last, moved to the kept one."""
+    if len(time) < 3:
+        return time, places
+    rows, n = [(time[0], places[0])], 1
+    while n < len(time):
+        close = n
+        while close < len(time) - 1 and np.hypot(*(places[close] - rows[-1][1])) < 0.1:
+            close += 1
+        if close > n and time[close] - rows[-1][0] > 1.0:
+            rows.append((time[close - 1], rows[-1][1]))
+        rows.append((time[close], places[close]))
+        n = close + 1
+    return tuple(np.array(column) for column in zip(*rows, strict=True))
+
+
+@pytest.mark.parametrize("creep", [0.05, 0.09, 0.3])
+def test_who_creeps_among_others_is_where_it_was(tmp_path: Path, creep: float) -> None:
+    """Brakes from 8 m/s, creeps for 4 s, stands for 3 s, creeps on and drives off."""
+    time = np.arange(0, 18.0, 0.02)
+    speed = np.interp(time, [0, 2, 4, 8, 8.1, 11, 11.1, 14, 18], [8, 8, creep, creep, 0, 0, creep, creep, 9])
+    s = 10 + np.concatenate([[0], np.cumsum(0.02 * (speed[1:] + speed[:-1]) / 2)])
+    flat, heading = np.zeros(len(s)), np.full(len(s), 0.3)
+    x, y = s * np.cos(0.3), s * np.sin(0.3)
+    cone = Others(
+        ("cone",), ("cones",), np.array([[0.4, 0.4, 0.75]]), np.arange(0, 18.1, 0.1), np.zeros((181, 1, 5))
+    )
+    poses = Poses(time, x, y, flat + GRAVITY_HEIGHT, heading, flat, flat, speed, cone)
+    save(ROADS["arcs"], tmp_path, ["openscenario"], WORLD, "r", poses)
+    played = []
+    for line in ET.parse(tmp_path / "r.drive.xosc").getroot().iter("Polyline"):
+        told = [(each.get("time"), *map(each[0][0].get, "xy")) for each in line]
+        moment, *place = np.array(told, float).T
+        played.append(kept_by_esmini(moment, np.array(place).T))
+    moment, place = (np.concatenate(parts) for parts in zip(*played, strict=True))
+    expected = np.stack([x, y], axis=1) + REAR_AXLE * np.array([np.cos(0.3), np.sin(0.3)])
+    found = np.stack([np.interp(time, moment, place[:, k]) for k in (0, 1)], axis=1)
+    assert np.hypot(*(found - expected).T).max() < 0.03

@@ -4,18 +4,21 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
+import staged
 from chromium import FOUND, BrowserTab, browser
 from road_parts import design_of
 from roadgpt.report import view
 from roadgpt.report.canvas import SEVERE
-from roadgpt.road import CrossSection, Design, Site, World
-from roadgpt.run import Run, Setup, prove
+from roadgpt.road import CrossSection, Design, Road, Site, World
+from roadgpt.run import Request, Run, Setup, prove
 from roadgpt.traffic import SIZES, Actor, Tracks
+from roadgpt.verdict import judge
 
 pytestmark = pytest.mark.skipif(FOUND is None, reason="no chromium is installed")
 
@@ -444,3 +447,48 @@ def test_weather_is_seen_on_the_page_and_fades_with_distance(tab: BrowserTab, tm
     assert seen["night"][-rows // 5 :].max() > 3 * sky["night"].mean()  # headlights
     assert road["rain 30"] < 0.9 * road["medium"]
     assert seen["low_sun"].max(axis=2)[: rows // 2].mean() > seen["medium"].max(axis=2)[: rows // 2].mean()
+
+
+def test_the_time_line_and_the_contact(tab: BrowserTab, tmp_path: Path) -> None:
+    """A car at 10 m/s behind a van that brakes from 10 m/s with 2 m/s^2: by hand they touch when its 9 m of
+    gap are gone, 3 s after the van began to brake; the relative speed is then 6 m/s."""
+    road = World().lay(Road.through([[x, 100] for x in range(20, 181, 20)]))
+
+    def braking(time: np.ndarray) -> tuple[Any, Any, Any]:
+        braked = np.clip(time - 1.0, 0.0, 5.0)
+        return 30 + 4.7 / 2 + 9 + 6.5 / 2 + 10 * time - braked**2, 98.0, 0.0
+
+    alone = staged.driven(staged.straight(30, 98, 0, 10), 6.0, road)
+    drive = staged.among(alone, staged.tracks(6.0, van_1=("van", braking)))
+    verdict = judge(road, drive, World())
+    request = Request(words="a contact", world=World(), seed=1, setup=Setup())
+    run = Run(
+        request=request, index=1, seed=1, road=road, drive=drive, verdict=verdict, outcome=verdict.outcome,
+        description=verdict.description,
+    )  # fmt: skip
+    path = view.write([run], tmp_path / "contact.html")
+    tab.size(1200, 800)
+    tab.open(path)
+    assert tab.run("document.querySelector('.slide b').textContent") == "contact"
+    tab.run("document.querySelector('button.contact').click()")
+    tab.settle()
+    assert tab.run("roadgpt.player.time") == pytest.approx(4.0, abs=0.02)
+    tab.key("Home")
+    tab.key("c")
+    assert tab.run("roadgpt.player.time") == pytest.approx(4.0, abs=0.02)
+    assert len(np.unique((tab.picture(".near canvas")[..., :3] * 255).round().reshape(-1, 3), axis=0)) > 12
+    lit = {}
+    for time in (0.5, 2.0, 5.9):
+        slide(tab, time)
+        lit[time] = tab.run("roadgpt.others[0][0].brake")
+    assert lit == {0.5: 0, 2.0: 1, 5.9: 1}
+    # at 3 s the gap is 5 m and closes with 4 m/s
+    told = "JSON.parse(document.getElementById('data').textContent)[0].others.near"
+    assert tab.run(f"{told}.ttc[30]") == pytest.approx(5 / 4, abs=0.01)
+    assert tab.run(f"{told}.conflict[30]") == pytest.approx(5 / 4, abs=0.01)
+    wide = tab.run("document.querySelector('.near canvas').clientWidth")
+    x, y = middle_of(tab, ".near canvas", (34 + (wide - 46) / 2) / wide)
+    tab.click(x, y)
+    tab.settle()
+    assert tab.run("roadgpt.player.time") == pytest.approx(3.0, abs=0.05)
+    assert not tab.told

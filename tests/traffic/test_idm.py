@@ -144,6 +144,28 @@ def test_everybody_leaves_when_nobody_comes_any_more(plan):
     pytest.fail(f"{mover.vehicles} have not left")
 
 
+@pytest.mark.parametrize(
+    ("plan", "seed"),
+    [
+        ("straight 100 // roundabout exit=2 large lanes=2 // straight 100", 11),
+        ("map columns=3 rows=2 stop", 27),
+    ],
+)
+def test_traffic_does_not_lock_up(plan, seed):
+    """Both did: in the ring, one stood at a junction in the middle of its change of lane; between the stop
+    signs, everybody waited for somebody with priority who had no room to go on."""
+    mover = IdmMover(stage(plan, seed), "medium")
+    mover.start(None)
+    stands, longest = {}, 0
+    for tick in range(4000):
+        mover.move(tick * STEP, None, NOBODY)
+        speeds = mover._numbers[mover._rows, 1]
+        stands = {who: stands.get(who, 0) + 1 for who in mover._who[speeds < 0.3].tolist()}
+        longest = max(longest, *stands.values(), 0)
+    assert len(mover.actors) > 1.5 * mover.vehicles
+    assert longest * STEP < 150.0
+
+
 def test_who_comes_upon_somebody_standing_stops_behind_them():
     mover = empty(STRAIGHT)
     lane = mover.lanes.begins.nonzero()[0][0]

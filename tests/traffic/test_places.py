@@ -11,6 +11,7 @@ from roadgpt.brief.plan import read_scene
 from roadgpt.errors import UsageError
 from roadgpt.network import network_of
 from roadgpt.network.lanes import lanes_of
+from roadgpt.network.markings import strokes
 from roadgpt.run import Setup, perform
 from roadgpt.traffic.actor import SIZES, corners
 from roadgpt.traffic.lights import GREEN, RED
@@ -227,6 +228,19 @@ def test_what_is_not_there_is_refused_by_name():
         way_of(role("adult crossing"), road.length - 2.0, road, world)
     with pytest.raises(UsageError, match="on the left at 50 m"):
         offset_of("lane", "left", 50.0, road, world, 1.8)
+
+
+def test_who_crosses_on_a_crosswalk_walks_over_its_stripes():
+    plan = PLANS[4]
+    road, _, _ = made(plan)
+    stripes = [each.points[:, :2] for each in strokes(road.network) if each.kind == "crosswalk"]
+    middles = shapely.points([stripe.mean(axis=0) for stripe in stripes])
+    (passage,) = road.passages
+    for near in (30.0, passage.start):
+        found = way(plan, "child crosswalk", near)
+        crossed = shapely.distance(middles, shapely.LineString(found.points[:, :2])) < 0.1
+        assert (found.meets[1] > passage.end) == (near > 30.0)
+        assert crossed.sum() >= 6
 
 
 def test_rows_of_cars_stand_beside_the_lanes_and_leave_junctions_and_ways_free():

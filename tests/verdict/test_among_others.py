@@ -13,6 +13,7 @@ from roadgpt.campaign.model import Proposal
 from roadgpt.campaign.single_test import Task, features_in, result_of
 from roadgpt.cli.screen import row_of
 from roadgpt.drive import Columns, Drive
+from roadgpt.errors import UsageError
 from roadgpt.network import Route
 from roadgpt.road import Limits, Profile, Road, World
 from roadgpt.run import Request, Run, Setup
@@ -60,7 +61,7 @@ def test_a_rear_end_collision_is_told_with_everything() -> None:
     assert (verdict.outcome, verdict.cause, verdict.first_contact) == ("FAIL", "collision", contact)
     assert verdict.description == (
         "hit van 1 after 47 m at 54 km/h: its front met the rear of van 1, at 18 km/h, with 36 km/h of "
-        "difference and 54 % overlap; at fault"
+        "difference and 54 % overlap; at fault; a careful driver (UN R157) brakes in time"
     )
     assert (verdict.at_s, verdict.at_xy, verdict.at_time) == (found.at_s, found.at_xy, found.at_time)
     assert verdict.sbft_description == "Car collided"
@@ -97,19 +98,19 @@ def test_faces_and_faults(own: Any, kind: str, other: Any, faces: tuple[str, str
     assert (found.overlap is None) == (found.face != "front")
 
 
-def test_a_collision_that_is_not_the_cars_fault_fails_the_test_all_the_same() -> None:
+def test_a_collision_that_nobody_could_avoid_is_no_failure() -> None:
     verdict = judge(ROAD, scene(straight(50, -2, 0, 5), car_2=("car", straight(30, -2, 0, 15))), WORLD)
-    assert (verdict.outcome, verdict.cause) == ("FAIL", "collision")
+    assert (verdict.outcome, verdict.cause) == ("UNAVOIDABLE", "collision")
     told = "was hit by car 2 after 58 m at 18 km/h: its rear met the front of car 2, "
     assert verdict.description.startswith(told)
-    assert verdict.description.endswith("; not at fault")
+    assert "; not at fault; no reference driver (" in verdict.description
 
 
 def test_two_contacts_are_counted_and_the_first_one_is_the_cause() -> None:
     others = {f"cones_{n}": ("cones", straight(60.0 + 20 * n, -2, 0, 0)) for n in range(3)}
     verdict = judge(ROAD, scene(straight(10, -2, 0, 15), **others), WORLD)
     assert [each.other for each in verdict.incidents or ()] == ["cones 0", "cones 1", "cones 2"]
-    assert verdict.description.endswith("; at fault; 3 times in all")
+    assert "; at fault; 3 times in all; a careful driver (" in verdict.description
     assert "standing" in verdict.description
 
 
@@ -246,18 +247,24 @@ def test_tables_and_reasons_say_who_was_at_fault() -> None:
         verdict = judge(ROAD, drive, WORLD)
         request = Request(words="", world=WORLD, seed=1, setup=Setup())
         run = Run(
-            request=request, index=1, seed=1, road=ROAD, drive=drive, verdict=verdict, outcome="FAIL",
-            description=verdict.description,
+            request=request, index=1, seed=1, road=ROAD, drive=drive, verdict=verdict,
+            outcome=verdict.outcome, description=verdict.description,
         )  # fmt: skip
         row = row_of(run)
-        assert row.outcome == ("FAIL (collision)" if fault else "FAIL (collision, not at fault)")
+        assert row.outcome == ("FAIL (collision)" if fault else "UNAVOIDABLE")
+        braked = replace(row, test_outcome="FAIL")
+        assert braked.outcome == ("FAIL (collision)" if fault else "FAIL (collision, not at fault)")
         assert json.loads(row.to_json())["at_fault"] is fault
         features = features_in(run)
         assert (features["COLLISIONS"], features["AT_FAULT"]) == (1, fault)
         assert features["IMPACT"] == pytest.approx(36, abs=0.05)
         stored = result_of(run, Task(1, 0, Proposal(None, 1, "draft")), features)
         assert row_of(stored).outcome == row.outcome
-        assert reason_of(run).sentence == verdict.description
+        if fault:
+            assert reason_of(run).sentence == verdict.description
+        else:
+            with pytest.raises(UsageError, match="did not fail"):
+                reason_of(run)
         alone = replace(
             run, drive=replace(drive, others=None), verdict=judge(ROAD, driven(leaves, 8, ROAD), WORLD)
         )

@@ -34,6 +34,7 @@ EVERY = (
 OUTCOMES = {
     "PASS": "passed",
     "FAIL": "failed",
+    "UNAVOIDABLE": "unavoidable",
     "INVALID": "invalid",
     "ERROR": "in_error",
     "VALID": "not_driven",

@@ -185,7 +185,7 @@ OF_COLUMN = {
     "tests.number": "{0} <= 10000000",
     **{f"batches.{name}": "{0} <= 10000000" for name in ("batch", "first", "n", "left")},
     "tests.batch": "{0} <= 10000000",
-    "tests.outcome": "{0} IN ('PASS', 'FAIL', 'INVALID', 'ERROR', 'VALID')",
+    "tests.outcome": "{0} IN ('PASS', 'FAIL', 'UNAVOIDABLE', 'INVALID', 'ERROR', 'VALID')",
     "tests.side": "{0} IN ('left', 'right')",
     "traces.file": "{0} GLOB '[0-9]*.npz' AND {0} NOT GLOB '*[^0-9npz.]*'",
 }
@@ -649,7 +649,7 @@ def refusals(folder: Path, store: Record | None = None) -> Iterator[None]:
 def _verdict_of(road: Road, drive: Drive, cell: Cell, result: Result) -> Verdict | None:
     """Judges the stored drive, and then replaces values of the verdict by those that the campaign stored,
     because the drive's rounded positions may give others. Returns None if the test was not judged."""
-    if result.outcome not in ("PASS", "FAIL") or result.margin is None:
+    if result.outcome not in ("PASS", "FAIL", "UNAVOIDABLE") or result.margin is None:
         return None
     step = len(drive) - 1
     if result.at_s is not None and result.cause in ("out of lane", "fell"):

@@ -144,7 +144,9 @@ def cell_statuses(record: Record) -> tuple[CellStatus, ...]:
         counts.setdefault(cell, {})[outcome] = count
         if outcome == "PASS":
             passed[cell] = tuple(rest)
-    others = dict(record.query("SELECT cell, count(handed_to) FROM tests GROUP BY cell"))
+    others = dict(
+        record.query("SELECT cell, count(handed_to) FROM tests WHERE outcome = 'FAIL' GROUP BY cell")
+    )
     asked = dict(record.query("SELECT cell, sum(n) FROM batches GROUP BY cell"))
     closed = dict(record.query("SELECT name, closed FROM cells"))
     measured = ("least_margin", "partly_outside", "mostly_outside", "max_oob", "beyond")

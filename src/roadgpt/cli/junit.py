@@ -28,7 +28,7 @@ Suite = tuple[str, Properties, Sequence[Row]]
 """Tests with the same description and settings: a name, the settings, and the rows of all tests."""
 
 MARKS = {"FAIL": "failure", "ERROR": "error"}
-COUNTED = {"FAIL": "failures", "ERROR": "errors", "INVALID": "skipped"}
+COUNTED = {"FAIL": "failures", "ERROR": "errors", "INVALID": "skipped", "UNAVOIDABLE": "skipped"}
 LONGEST = 120  # letters of a suite's name
 IN_CASE = (
     "words", "origin", "seed", "max_oob", "beyond_m", "margin_m", "length_m", "at_s_m", "side", "own_share",
@@ -125,7 +125,7 @@ def _add_case(suite: XmlElement, row: Row, classname: str) -> None:
     case = {"name": row.name or row.file, "classname": classname, "time": f"{row.seconds:.3f}"}
     element = suite.add("testcase", {**case, **({"file": row.file} if row.file else {})})
     _add_properties(element, {name: getattr(row, name) for name in IN_CASE})
-    if outcome == "INVALID":
+    if COUNTED.get(outcome) == "skipped":
         element.add("skipped", {"message": says})
     elif outcome in MARKS:
         text = "\n".join(filter(None, (says, row.file, row.trace)))

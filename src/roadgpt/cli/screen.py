@@ -31,6 +31,7 @@ COLOURS = {
     "PASS (partly outside)": "yellow",
     "PASS (mostly outside)": "bright_red",
     "VALID": "green",
+    "UNAVOIDABLE": "blue",
     "FAIL": "red",
     "INVALID": "cyan",
     "ERROR": "magenta",
@@ -89,7 +90,7 @@ class Row:
     @property
     def outcome(self) -> str:
         """The outcome with cause or qualifier, such as 'FAIL (out of lane)' or 'PASS (mostly outside)'."""
-        if self.cause:
+        if self.cause and self.test_outcome != "UNAVOIDABLE":
             other = f", {self.handed_to} drove" if self.handed_to else ""
             fault = ", not at fault" if self.cause == "collision" and self.at_fault is False else ""
             return f"{self.test_outcome} ({self.cause}{fault}{other})"
@@ -302,7 +303,9 @@ class Screen:
         for outcome, count, share, least, most in summary(self.rows):
             told = click.style(f"{outcome:<{WIDEST}}", fg=colour_of(outcome))
             _show(f"{told} {count:>7} {share:>7}  {least:>12}  {most:>18}")
-        despite = sum(bool(row.findings) for row in self.rows if row.test_outcome in ("PASS", "FAIL"))
+        despite = sum(
+            bool(row.findings) for row in self.rows if row.test_outcome in ("PASS", "FAIL", "UNAVOIDABLE")
+        )
         if despite:
             _show(f"driven despite findings of the rules: {despite} (-v tells all of them)")
         _show(f"{self._number()} roads in {self.seconds:.1f} s ({self._rate():.1f} roads/s)")

@@ -19,7 +19,7 @@ from roadgpt import plugins
 from roadgpt.brief.scene import Scene
 from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended, Handover, check_motion
 from roadgpt.drive.isolation import driver_of
-from roadgpt.drive.view import CameraSpec, Command, JunctionAhead, LightAhead, Other, View
+from roadgpt.drive.view import CameraSpec, Command, JunctionAhead, LightAhead, Other, SignAhead, View
 from roadgpt.errors import UsageError
 from roadgpt.network import only_road, refuse_without_route
 
@@ -44,6 +44,7 @@ __all__ = [
     "JunctionAhead",
     "LightAhead",
     "Other",
+    "SignAhead",
     "Simulator",
     "View",
     "simulate",

@@ -1,7 +1,7 @@
 """Renders the images of a driver's camera, for simulators that have no camera of their own."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from roadgpt.drive.view import CameraSpec
@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from roadgpt.road import Road, World
+    from roadgpt.scene import Body
 
 POSE = ("x", "y", "z", "heading", "pitch", "roll", "steer", "speed", "brake")
 
@@ -25,8 +26,8 @@ def camera_of(driver: Any) -> CameraSpec | None:
 
 
 class CameraSensor:
-    """Renders the road as the driver's camera sees it; the image depends only on the road, the world, and
-    the pose, steering and braking of the car."""
+    """Renders the road as the driver's camera sees it; the image depends only on the road, the world,
+    the pose, steering and braking of the car, and the others on the road."""
 
     def __init__(self, camera: CameraSpec, road: "Road", world: "World") -> None:
         """Mounts a camera on a car on this road."""
@@ -40,12 +41,12 @@ class CameraSensor:
         self._every, self._step = max(1, camera.every), 0
         self._image: NDArray[uint8] | None = None
 
-    def see(self, row: Mapping[str, float]) -> "NDArray[uint8]":
+    def see(self, row: Mapping[str, float], others: "Sequence[Body]" = ()) -> "NDArray[uint8]":
         """Returns the image ``(height, width, 3)`` at a control step, ``row`` of a drive. A new image is
         rendered every ``camera.every`` steps; in between, the last image is returned again."""
         from roadgpt.scene import Pose
 
         if self._image is None or self._step % self._every == 0:
-            self._image = self._scene.render(self._camera, Pose(*(row[name] for name in POSE)))
+            self._image = self._scene.render(self._camera, Pose(*(row[name] for name in POSE)), others=others)
         self._step += 1
         return self._image

@@ -7,39 +7,49 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from roadgpt.brief.scene import VEHICLES
 from roadgpt.brief.visibility import visual_range
-from roadgpt.compiled import compiled
+from roadgpt.compiled import compiled, inlined
 from roadgpt.drive.drive import COLUMNS, Box, FloatArray
-from roadgpt.drive.view import LightAhead, Other
+from roadgpt.drive.view import LightAhead, Other, Others
 from roadgpt.network.lanes import HEADROOM
-from roadgpt.traffic import STEP, TestedCar, Traffic
+from roadgpt.traffic import STEP, Actor, TestedCar, Traffic
+from roadgpt.traffic.actor import bodies
 from roadgpt.traffic.boxes import touch
 
 if TYPE_CHECKING:
     from roadgpt.drive.drive_monitor import DriveMonitor
     from roadgpt.road import Road, World
+    from roadgpt.scene import Body
 
 SEEN = 200.0  # m, between the middles of the car and of another
+EYE = 1.2  # m, height of the driver's eye, which looks from the middle of the car
+SPACING = 5.0  # m between the places at which the height of the road is known
+BESIDE = 6.0  # m, within which the road lies under a line of sight
+FLAT = 0.002  # m, from the middle of three such places to the line between the others, twice: hides nobody
 _PLACES = [[*COLUMNS].index(name) for name in ("x", "y", "z", "heading", "speed", "s", "t")]
 
 
 @compiled
 def look_around(
-    states: FloatArray, sizes: FloatArray, car: FloatArray, order: "NDArray[np.int64]", seen: FloatArray
+    states: FloatArray, looks: FloatArray, car: FloatArray, order: "NDArray[np.int64]", seen: FloatArray
 ) -> tuple[int, bool]:
     """Writes into ``order`` the numbers of the actors that are seen, nearest first, and into ``seen`` the x,
-    y, heading in (-pi, pi] and speed of each; returns how many they are and whether the car touches one.
+    y, heading in (-pi, pi], speed, length and width of each, and 1.0 if it is a vehicle, else 0.0; returns
+    how many they are and whether the car touches one.
 
-    ``states`` are as in Tracks, ``sizes`` (n, 2) lengths and widths, and ``car`` has the x, y and z of the
-    middle of the car's box on the ground, its heading, length and width. Roads that cross above each other do
-    not count."""
+    ``states`` are as in Tracks, ``looks`` (n, 4) lengths, widths, whether they are vehicles, and from how
+    many metres they are seen, and ``car`` has the x, y and z of the middle of the car's box on the ground,
+    its heading, length and width. Roads that cross above each other do not count."""
     x, y, z, heading, length, width = car
     far = np.empty(len(states))
     count, touches = 0, False
     for k in range(len(states)):
         dx, dy = states[k, 0] - x, states[k, 1] - y
         far[k] = math.hypot(dx, dy)
-        if not far[k] <= SEEN:  # also who is not there
+        if abs(states[k, 2] - z) <= HEADROOM:
+            touches = touches or touch(dx, dy, heading, length, width, states[k, 3], looks[k, 0], looks[k, 1])
+        if not far[k] <= looks[k, 3]:  # also who is not there
             continue
         place = count
         while place > 0 and far[order[place - 1]] > far[k]:
@@ -47,13 +57,90 @@ def look_around(
             place -= 1
         order[place] = k
         count += 1
-        if abs(states[k, 2] - z) <= HEADROOM:
-            touches = touches or touch(dx, dy, heading, length, width, states[k, 3], sizes[k, 0], sizes[k, 1])
     for place in range(count):
         k = order[place]
         seen[place, 0], seen[place, 1], seen[place, 3] = states[k, 0], states[k, 1], states[k, 4]
         seen[place, 2] = math.atan2(math.sin(states[k, 3]), math.cos(states[k, 3]))
+        seen[place, 4:] = looks[k, :3]
     return count, touches
+
+
+@inlined
+def _hides(
+    states: FloatArray, sizes: FloatArray, m: int, eye: FloatArray, x: float, y: float, z: float
+) -> bool:
+    """Returns whether box ``m`` lies between the eye and a point."""
+    c, s = math.cos(states[m, 3]), math.sin(states[m, 3])
+    dx, dy, there_x, there_y = eye[0] - states[m, 0], eye[1] - states[m, 1], x - eye[0], y - eye[1]
+    low, high = 0.0, 1.0
+    for axis in range(2):
+        here = dx * c + dy * s if axis == 0 else dy * c - dx * s
+        slope = there_x * c + there_y * s if axis == 0 else there_y * c - there_x * s
+        room = sizes[m, axis] / 2.0
+        if abs(slope) < 1e-9:
+            if abs(here) > room:
+                return False
+        else:
+            one, two = (-room - here) / slope, (room - here) / slope
+            low, high = max(low, min(one, two)), min(high, max(one, two))
+    one, two = eye[2] + low * (z - eye[2]), eye[2] + high * (z - eye[2])
+    return low < high and min(one, two) < states[m, 2] + sizes[m, 2] and max(one, two) > states[m, 2]
+
+
+@compiled
+def in_sight(
+    states: FloatArray, sizes: FloatArray, eye: FloatArray, road: FloatArray, order: "NDArray[np.int64]",
+    seen: FloatArray, count: int, reach: float,
+) -> int:  # fmt: skip
+    """Keeps in ``order`` and ``seen``, as ``look_around`` wrote them, those whom the driver's eye at x, y, z
+    sees within ``reach`` metres, and returns how many they are.
+
+    Somebody is seen if a line from the eye leads to the top of its box, at its middle or a corner, past all
+    other boxes and, for the middle, above the points (n, 3) of the road. ``sizes`` (n, 3) are lengths, widths
+    and heights."""
+    near, before, kept = order[:count].copy(), np.empty(count, np.int64), 0
+    ways = np.empty((count, 4))  # distance, bearing and radius of a box, and half of the angle that it covers
+    for place in range(count):
+        k = near[place]
+        x, y = states[k, 0] - eye[0], states[k, 1] - eye[1]
+        far, radius = math.hypot(x, y), math.hypot(sizes[k, 0], sizes[k, 1]) / 2.0
+        wide = math.asin(radius / far) if far > radius else math.pi
+        ways[place, 0], ways[place, 1], ways[place, 2], ways[place, 3] = far, math.atan2(y, x), radius, wide
+    for place in range(count):
+        k, far = near[place], ways[place, 0]
+        ahead, aside, top = states[k, 0] - eye[0], states[k, 1] - eye[1], states[k, 2] + sizes[k, 2]
+        is_hidden = far > reach
+        for n in range(len(road)):
+            x, y = road[n, 0] - eye[0], road[n, 1] - eye[1]
+            u = (x * ahead + y * aside) / max(far * far, 1e-9)
+            if 0.0 < u < 1.0 and abs(y * ahead - x * aside) < BESIDE * far:
+                is_hidden = is_hidden or road[n, 2] > eye[2] + u * (top - eye[2])
+        if is_hidden:
+            continue
+        some = 0
+        for n in range(count):
+            apart, least = abs(ways[n, 1] - ways[place, 1]), ways[n, 3] + ways[place, 3]
+            is_nearer = n != place and ways[n, 0] - ways[n, 2] < far + ways[place, 2]
+            if is_nearer and min(apart, 2.0 * math.pi - apart) < least:
+                before[some] = near[n]
+                some += 1
+        c, s, is_seen = math.cos(states[k, 3]), math.sin(states[k, 3]), False
+        for point in range(5):
+            if is_seen:
+                break
+            along = (0.0, 1.0, 1.0, -1.0, -1.0)[point] * sizes[k, 0] / 2.0
+            across = (0.0, 1.0, -1.0, 1.0, -1.0)[point] * sizes[k, 1] / 2.0
+            x, y = states[k, 0] + along * c - across * s, states[k, 1] + along * s + across * c
+            is_seen = True
+            for n in range(some):
+                if _hides(states, sizes, before[n], eye, x, y, top):
+                    is_seen = False
+                    break
+        if is_seen:
+            order[kept] = k
+            seen[kept] = seen[place]
+            kept += 1
+    return kept
 
 
 class Company:
@@ -66,12 +153,17 @@ class Company:
         passages = road.passages if traffic.lights is not None else ()
         lines = [(each.light_line, each.arrival) for each in passages]
         self._lines = [(line, end) for line, end in lines if line is not None]
+        self.has_lights = bool(self._lines)
+        """Whether traffic lights that run are on the way."""
         self._scene, self._samples = world.scene, 0
-        self._reach: list[float] = []  # from the car's middle to that of each of the others
-        self._looks: list[tuple[str, float, float]] = []
-        self._sizes, self._order, self._seen = np.empty((0, 2)), np.empty(0, np.int64), np.empty((0, 4))
+        self._looks: list[tuple[float, ...]] = []
+        self._table, self._sizes = np.empty((0, 4)), np.empty((0, 3))
+        self._order, self._seen = np.empty(0, np.int64), np.empty((0, 7))
+        line = road.at(np.arange(0.0, road.length, SPACING))
+        is_hilly = np.abs(np.diff(line[:, 2], 2)).max(initial=0.0) > FLAT
+        self._heights = line if is_hilly else line[:0]
 
-    def seen(self, row: FloatArray, time: float) -> tuple[Other, ...]:
+    def seen(self, row: FloatArray, time: float) -> Others:
         """Moves the others on to this time, tells the monitor whether the car touches one, and returns those
         that the driver sees. Call it at every control step; ``row`` is the state of the car in the order of
         COLUMNS."""
@@ -82,23 +174,33 @@ class Company:
             self._traffic.advance(TestedCar(x, y, heading, speed, s, t, box.length, box.width))
             self._samples += 1
             new = self._traffic.actors[len(self._looks) :]
-            self._looks += [(each.kind, *each.size[:2]) for each in new]
-            self._reach += [visual_range(self._scene, each.kind) + each.size.length / 2 for each in new]
-            self._sizes = np.array([look[1:] for look in self._looks]).reshape(-1, 2)
-            self._order, self._seen = np.empty(len(self._looks), np.int64), np.empty((len(self._looks), 4))
-        states, looks = self._traffic.at(time), self._looks
+            if new:
+                self._looks += [(*each.size[:2], each.kind in VEHICLES, self._reach(each)) for each in new]
+                self._table = np.array(self._looks, float)
+                self._sizes = np.vstack([self._sizes, *(each.size for each in new)])
+                count = len(self._looks)
+                self._order, self._seen = np.empty(count, np.int64), np.empty((count, 7))
+        states, actors = self._traffic.at(time), self._traffic.actors
         car = np.array([x, y, z - box.height, heading, box.length, box.width])
-        count, touches = look_around(states, self._sizes, car, self._order, self._seen)
+        count, touches = look_around(states, self._table, car, self._order, self._seen)
         if touches:
             self._monitor.touch(time)
-        near = zip(self._order[:count].tolist(), self._seen[:count].tolist(), strict=True)
-        return tuple(
-            [
-                Other._make((looks[k][0], *where, *looks[k][1:]))
-                for k, where in near
-                if math.hypot(where[0] - x, where[1] - y) <= self._reach[k]
-            ]
-        )
+        eye, here = np.array([x, y, z - box.height + EYE]), int(s / SPACING)
+        road = self._heights[max(here - int(SEEN / SPACING), 0) : here + int(SEEN / SPACING)]
+        count = in_sight(states, self._sizes, eye, road, self._order, self._seen, count, SEEN)
+        boxes = self._seen[:count].copy()
+        kinds = [actors[k].kind for k in self._order[:count].tolist()]
+        others = Others(map(Other._make, zip(kinds, *boxes.T[:6].tolist(), strict=True)))
+        others.boxes = boxes
+        return others
+
+    def _reach(self, actor: Actor) -> float:
+        """Returns from how many metres between their middles the driver sees an actor."""
+        return min(SEEN, visual_range(self._scene, actor.kind) + actor.size.length / 2)
+
+    def bodies(self, time: float) -> "list[Body]":
+        """Returns the bodies of the others at this time, for images."""
+        return bodies(self._traffic.actors, self._traffic.at(time))
 
     def lights(self, s: float, time: float) -> tuple[LightAhead, ...]:
         """Returns the lights ahead of station ``s`` of the route, and what they show at this time."""

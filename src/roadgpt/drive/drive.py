@@ -135,6 +135,9 @@ class Drive:
     others: "Tracks | None" = None
     """How the others on the road moved, from the start of the drive to its end; None if nobody else was
     there."""
+    lights: bool = False
+    """Whether traffic lights on the way ran: those of ``roadgpt.traffic.lights`` with the seed of the drive.
+    Else they stayed green."""
 
     def __repr__(self) -> str:
         way = f"{self['s'][-1]:.1f} m in {self.duration:.2f} s, {len(self)} steps"
@@ -206,6 +209,7 @@ class Drive:
             "car": self.car._asdict(),
             **({"handovers": self.handovers} if self.handovers else {}),
             **({OTHERS: packed(self.others)[0]} if self.others is not None else {}),
+            **({"lights": True} if self.lights else {}),
         }
         buffer = io.BytesIO()
         with zipfile.ZipFile(buffer, "w") as archive:
@@ -262,6 +266,7 @@ def _checked(header: Any, arrays: Mapping[str, NDArray[Any]]) -> Drive:
         car=Box(**{name: float(value) for name, value in header["car"].items()}),
         handovers=strictly(tuple[Handover, ...], header.get("handovers", ())),
         others=others,
+        lights=bool(header.get("lights", False)),
     )
 
 

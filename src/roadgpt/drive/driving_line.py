@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from roadgpt.drive.outlook import limits_of
 from roadgpt.drive.view import Command, View
 from roadgpt.road.speed_profile import PathGeometry
 
@@ -193,19 +194,32 @@ def turning_speed(curvature: float) -> float:
     return SPEED / 3.6 / math.pow(abs(curvature), EXPONENT)
 
 
-def highest_speeds(road: "Road", line: DrivingLine, braking: float = math.inf) -> list[float] | None:
-    """Returns the speed in m/s that stop signs and the bends of junctions allow, at each station of a line.
+def lane_limits(road: "Road", world: "World", line: DrivingLine) -> list[float]:
+    """Returns the speed limit in m/s of the lanes at each station of a line; infinite if they have none."""
+    found = [math.inf] * len(line.x)
+    for start, limit in limits_of(road, world):
+        first = line.place(start)[0]
+        found[first:] = [limit] * (len(found) - first)
+    return found
 
-    Where nothing limits the speed, the speed is infinite. The result is None on a road without junctions.
+
+def highest_speeds(
+    road: "Road", world: "World", line: DrivingLine, braking: float = math.inf
+) -> list[float] | None:
+    """Returns the speed in m/s that the limits of lanes, stop signs and the bends of junctions allow, at each
+    station of a line.
+
+    Where nothing limits the speed, the speed is infinite, and the result is None if that is everywhere.
     ``braking`` is the largest deceleration in m/s^2 before and inside junctions. By default only stop signs
     limit the deceleration here, and the driver's plan limits it later."""
     ways = road.passages
-    if not ways:
+    if not ways and not limits_of(road, world):
         return None
-    found = [math.inf] * len(line.x)
+    found = lane_limits(road, world, line)
     for way in ways:
         first, last = line.place(way.start)[0], line.place(way.end)[0] + 1
-        found[first : last + 1] = map(turning_speed, line.curvature[first : last + 1])
+        turning = map(turning_speed, line.curvature[first : last + 1])
+        found[first : last + 1] = map(min, found[first : last + 1], turning)
         if way.stop_line is not None:
             stop = line.place(way.stop_line - FRONT - BEFORE_LINE)[0]
             for i in range(min(stop + BEHIND, len(found))):

@@ -3,18 +3,23 @@
 A driver follows whoever is in its path by the Intelligent Driver Model, as the traffic around it does
 (``roadgpt.traffic.following``). Its path is the strip that the car covers along the planned line: others on
 it count, also who only reaches into it, who crosses it or moves into it, and who comes towards the car. Red
-lights count like somebody who stands behind their stop line."""
+lights count like somebody who stands behind their stop line, and so do the lines where it gives way
+(``roadgpt.drive.giving_way``)."""
 
-from typing import Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roadgpt.brief.scene import VEHICLES
 from roadgpt.drive.driving_line import BEFORE_LINE, FRONT, LEAST_BRAKE, DrivingLine, FloatArray, pedals_for
-from roadgpt.drive.view import Command, View
+from roadgpt.drive.view import Command, Others, View
+
+if TYPE_CHECKING:
+    from roadgpt.drive.giving_way import GivingWay
 
 TIME_GAP = 1.5  # s, to the one ahead: the usual setting; ISO 15622 asks for at least 0.8 s
 PULL, BRAKE = 1.5, 2.0  # m/s^2, IDM's a and b, as the cars of the traffic have
+FOLLOWS = np.array([TIME_GAP, PULL, BRAKE])
 HARDEST = 9.0  # m/s^2
 FIRM = 3.0  # m/s^2, with which a car stops at a yellow light; else it drives on
 ROLLS = 0.3  # m/s, below which a car that need not go on is held by its brake
@@ -29,11 +34,13 @@ class KeepingDistance:
         self._along = self._path = np.empty(0)
         self._stops_at: set[int] = set()
         """The lights at which the car stops, counted from the last on the route."""
+        self._giving_way: GivingWay | None = None
 
-    def ahead(self, view: View) -> FloatArray:
+    def ahead(self, view: View, lines: Sequence[float] = ()) -> FloatArray:
         """Returns for each of the others the metres to it, its speed along the path, the acceleration that it
         allows (see ``path_ahead.look_ahead``), and 1.0 if it is a vehicle, else 0.0. A red light counts as a
-        vehicle that stands behind its stop line."""
+        vehicle that stands behind its stop line, and so do further ``lines``, metres ahead along the
+        route."""
         from roadgpt.drive.path_ahead import STEP, look_ahead  # only drives among others load it
 
         line = self._line
@@ -44,15 +51,12 @@ class KeepingDistance:
             self._path = np.column_stack(columns)
         first, share = line.place(view.s)
         before, after = self._along[first : first + 2].tolist()
-        rows: list[tuple[Any, ...]] = [(*each[1:], each.kind in VEHICLES) for each in view.others]
-        rows += [self._barrier(view.s + distance) for distance in self._to_stop_at(view)]
-        if not rows:
-            return np.empty((0, 4))
+        others = (view.others if isinstance(view.others, Others) else Others(view.others)).boxes
+        barriers = [self._barrier(view.s + distance) for distance in (*self._to_stop_at(view), *lines)]
+        if barriers:
+            others = np.vstack([others, barriers])
         car = np.array([view.x, view.y, view.heading, view.speed, FRONT])
-        follows = np.array([TIME_GAP, PULL, BRAKE])
-        start = before + share * (after - before)
-        others = np.array(rows, float)
-        return np.column_stack([look_ahead(self._path, start, others, car, follows), others[:, -1]])
+        return look_ahead(self._path, before + share * (after - before), others, car, FOLLOWS)
 
     def _barrier(self, s: float) -> tuple[float, ...]:
         """Returns what stands for a red light at a stop line: something across the path, so far behind the
@@ -79,10 +83,17 @@ class KeepingDistance:
         return found
 
     def kept(self, view: View, command: Command) -> Command:
-        """Returns the command, with less throttle or more brake for red lights and others in the path."""
+        """Returns the command, with less throttle or more brake for red lights, others in the path, and those
+        to whom the driver gives way."""
         if not (view.others or view.lights):
             return command
-        least = float(self.ahead(view)[:, 2].min(initial=np.inf))
+        lines = list[float]()
+        if view.route is not None:
+            from roadgpt.drive.giving_way import GivingWay  # only drives among others load it
+
+            self._giving_way = self._giving_way or GivingWay(view.route, view.world, self._line)
+            lines = self._giving_way.lines(view)
+        least = float(self.ahead(view, lines)[:, 2].min(initial=np.inf))
         return slowed(self._line, view, command, max(least, -HARDEST))
 
 

@@ -47,8 +47,8 @@ def look_ahead(
     path: FloatArray, start: float, others: FloatArray, car: FloatArray, follows: FloatArray
 ) -> FloatArray:
     """Returns for each of the others the metres between the car's front and it along the path, its speed
-    along the path, and the acceleration in m/s^2 that it allows. For who is not in the path, metres and
-    acceleration are infinite.
+    along the path, the acceleration in m/s^2 that it allows, and whether it is a vehicle. For who is not in
+    the path, metres and acceleration are infinite.
 
     In the path is whose box overlaps the strip that the car covers there, within HORIZON metres; who will be
     there soon, seen by where and how fast they move now; and nobody who will have crossed it before the car
@@ -60,11 +60,11 @@ def look_ahead(
         others: x, y, heading, speed, length and width of each, and 1.0 if it is a vehicle, shape (n, 7).
         car: x, y and heading of the car, its speed, and the metres from its centre of gravity to its front.
         follows: IDM's T, a and b."""
-    out = np.empty((len(others), 3))
+    out = np.empty((len(others), 4))
     v, front, first = car[SPEED], car[4], int(start / STEP)
     for k in range(len(others)):
         other = others[k]
-        out[k] = math.inf, 0.0, math.inf
+        out[k] = math.inf, 0.0, math.inf, other[IS_VEHICLE]
         reach = math.hypot(other[LENGTH], other[WIDTH]) / 2.0 + HALF_WIDTH + SPARE + 1.0
         hit, near, nearest, j = -1, first, math.inf, first
         while j < len(path) and j * STEP < start + front + HORIZON:

@@ -1,6 +1,12 @@
 """Defines the View that a driver gets and the Command that it returns at every control step."""
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.brief.scene import VEHICLES
 
 if TYPE_CHECKING:
     from roadgpt.network import Route
@@ -34,6 +40,17 @@ class LightAhead(NamedTuple):
     shows: Literal["green", "yellow", "red"]
 
 
+class SignAhead(NamedTuple):
+    """A sign that the route comes to, as a driver sees it."""
+
+    kind: Literal["stop", "yield", "speed limit"]
+    distance: float
+    """Distance in metres along the route from the car's centre of gravity: to the line of "stop" and "yield",
+    or to the junction where there is no line; 0 of a speed limit that holds where the car is."""
+    limit: float | None = None
+    """The speed limit in m/s; None for other signs."""
+
+
 class Other(NamedTuple):
     """Somebody or something else on the road, as a driver sees it."""
 
@@ -50,6 +67,15 @@ class Other(NamedTuple):
     length: float
     """Length of its box in metres, and ``width``."""
     width: float
+
+
+class Others(tuple[Other, ...]):
+    """The others that a driver sees, nearest first."""
+
+    @cached_property
+    def boxes(self) -> NDArray[np.float64]:
+        """Each Other from ``x`` on, and 1.0 if it is a vehicle, else 0.0; shape (n, 7)."""
+        return np.array([(*each[1:], each.kind in VEHICLES) for each in self], float).reshape(-1, 7)
 
 
 class View(NamedTuple):
@@ -101,11 +127,16 @@ class View(NamedTuple):
     lanes_right: int = 0
     """Number of driving lanes to the right of the lane that the car is to follow, oncoming lanes included."""
     others: tuple[Other, ...] = ()
-    """The others on the road whose middles are within 200 m of the middle of the car, nearest first; in fog,
-    rain and at night, only those within the visual range."""
+    """The others on the road whose middles are within 200 m of the middle of the car, on all sides, nearest
+    first. Left out is whom the driver cannot see, from 1.2 m above the road in the middle of the car: who is
+    hidden behind the boxes of others, or behind a crest of the road, and in fog, rain and at night who is
+    beyond the visual range."""
     lights: tuple[LightAhead, ...] = ()
     """The traffic lights on the route whose stop lines are ahead of the car, nearest first; empty if no
     traffic drives on the map: then all lights are green."""
+    signs: tuple[SignAhead, ...] = ()
+    """The signs on the route, nearest first: to stop or to give way, and the speed limits that its lanes have
+    of their own. Empty if a simulator does not tell them."""
 
 
 class CameraSpec(NamedTuple):

@@ -52,15 +52,17 @@ class Passage(NamedTuple):
     @property
     def stop_line(self) -> float | None:
         """Station in metres at which the line of a stop sign begins; None if there is no stop sign."""
-        return self._line if self.control == "stop" else None
+        return self.line if self.control == "stop" else None
 
     @property
     def light_line(self) -> float | None:
         """Station in metres at which the line before traffic lights begins; None if there are none."""
-        return self._line if self.control == "lights" else None
+        return self.line if self.control == "lights" else None
 
     @property
-    def _line(self) -> float:
+    def line(self) -> float:
+        """Station in metres at which the line that belongs to the sign or the lights begins, or would
+        begin."""
         return self.start - line_before(self._arm) - STOP_LINE
 
     @property

@@ -95,6 +95,8 @@ WORDS = {
     "wrong turn": "took a wrong turn",
     "wrong way": "drove the wrong way",
     "stop line": "did not stop",
+    "red light": "ran a red light",
+    "failure to yield": "did not give way",
     "off road": "a wheel off the road",
     "collision": "contact",
     "near miss": "near miss",

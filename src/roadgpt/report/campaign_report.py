@@ -116,6 +116,8 @@ def _summary(record: Record, first: Request, status: Status, cells: Sequence[Cel
     counts, (failed, driven) = status.outcomes, _driven(status)
     told = ", ".join(f"{number:,} {outcome}" for outcome, number in sorted(counts.items()))
     out = [f"{status.done:,} tests: {told or 'nothing yet'}."]
+    if apart := counts.get("UNAVOIDABLE", 0):
+        out.append(f"{plural(apart, 'collision')} no careful driver could have avoided: counted apart.")
     if driven:
         out.append(f"The car failed on {share_of(failed, driven)} of the roads that were driven.")
         if other := sum(cell.handed_over for cell in status.cells):

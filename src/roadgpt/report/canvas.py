@@ -37,20 +37,21 @@ INK, SOFT, FAINT = "#1b1e23", "#5f6670", "#d9dce1"
 GRASS = "#cfdcc0"
 # Okabe and Ito's colours, which colour-blind people can distinguish; a word or a symbol is always shown, too.
 BLUE, ORANGE, GREEN, VERMILLION, PURPLE = "#0072b2", "#e69f00", "#009e73", "#d55e00", "#aa4499"
-YELLOW = "#d0bf00"
+YELLOW, SKY = "#d0bf00", "#56b4e9"
 SEVERE: dict[Severity, str] = dict(zip(SEVERITIES, (GREEN, YELLOW, ORANGE), strict=True))
 """Colours that show how far outside its lane the car was."""
 OUTCOMES = {
     "PASS": GREEN,
     **{f"PASS ({name})": SEVERE[name] for name in SEVERITIES[1:]},
     "FAIL": VERMILLION,
+    "UNAVOIDABLE": SKY,
     "INVALID": SOFT,
     "ERROR": PURPLE,
     "VALID": BLUE,
 }
-LETTERS = {YELLOW: INK, ORANGE: INK}
+LETTERS = {YELLOW: INK, ORANGE: INK, SKY: INK}
 """Colour of text on each light colour; text on all other colours is white."""
-DARKER = {YELLOW: "#7d7100", ORANGE: "#9a6400"}
+DARKER = {YELLOW: "#7d7100", ORANGE: "#9a6400", SKY: "#2a76a3"}
 """Darker variants of light colours, for text on white."""
 HALO = [withStroke(linewidth=2.5, foreground="white")]
 MARGIN = 0.3  # inches, left and right of the header

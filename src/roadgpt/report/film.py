@@ -30,6 +30,7 @@ from roadgpt.road import Road, World
 from roadgpt.run import Run
 from roadgpt.run.atomic import whole_file
 from roadgpt.scene import Camera, Mount, Pose, Scene
+from roadgpt.traffic.actor import bodies
 from roadgpt.verdict import percent, severity
 from roadgpt.verdict.oracle import margins
 
@@ -196,8 +197,11 @@ class Pane:
         now = min(time, self.trip.duration)
         car = self.trip.car(now)
         pose = self.trip.follower(now) if self.camera.mount == "chase" else car
+        drive = self.run.drive
+        tracks = None if drive is None else drive.others
+        others = [] if tracks is None else bodies(tracks.actors, tracks.at(now))
         picture = Image.fromarray(
-            self.scene.render(self.camera, pose, car=None if self.run.drive is None else car)
+            self.scene.render(self.camera, pose, car=None if drive is None else car, others=others)
         )
         brush = ImageDraw.Draw(picture, "RGBA")  # colours with an opacity are blended
         self._title(brush)

@@ -11,13 +11,15 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from matplotlib.patheffects import withStroke
 
-from roadgpt.brief.scene import ActorKind
+from roadgpt.brief.scene import VEHICLES, ActorKind
 from roadgpt.geometry.curve import Array
 from roadgpt.report.canvas import BLUE, GREEN, HALO, INK, POINTS, SOFT, VERMILLION
 from roadgpt.report.plan_view import Frame, draw_road
 from roadgpt.run import Run
-from roadgpt.traffic.actor import HEADING, X, Y, corners
+from roadgpt.traffic import Tracks
+from roadgpt.traffic.actor import HEADING, SPEED, STILL, X, Y, corners
 from roadgpt.verdict import Incident
+from roadgpt.verdict.contact import turned
 
 NAVY, BROWN, PINK = "#1f3763", "#7a4b16", "#c2408f"
 COLOURS: dict[ActorKind, tuple[str, str]] = {
@@ -35,6 +37,18 @@ COLOURS: dict[ActorKind, tuple[str, str]] = {
     "lost_load": ("thing", SOFT),
 }
 """What the key calls each kind, and its colour."""
+BOX = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+TURN = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
+SHAPES: dict[str, tuple[str, Any]] = {
+    "two wheels": ("d", ((1, 0), (0, 1), (-1, 0), (0, -1))),
+    "person": ("o", np.column_stack([np.cos(TURN), np.sin(TURN)])),
+    "animal": ("^", ((1, 0), (-1, 1), (-1, -1))),
+}
+"""Markers in the key and outlines of what is not drawn as a box, in halves of its length and width."""
+SLOWS, AROUND = 0.5, 0.2  # m/s^2, from which brake lights are on; s before and after, compared for it
+PRESSED = 0.05  # of the tested car's brake pedal
+RED = "#ff2a1f"
+STAR: dict[str, Any] = {"marker": (8, 1), "ms": 11, "mfc": VERMILLION, "mec": "white", "zorder": 10.5}
 TRAIL, STEP = 5.0, 0.2  # s of the way before the moment, and between its points
 SMALLEST = 4.5  # points, of the longer side of a box
 INSET = 2.1  # inches, the height of the inset
@@ -72,21 +86,45 @@ def draw_others(axes: Axes, run: Run, per_inch: float, time: float) -> None:
     least = SMALLEST / POINTS * per_inch
     before = np.arange(max(time - TRAIL, 0.0), time + STEP / 2, STEP)
     ways = others.at(before)[..., [X, Y]]
-    for way, state, actor in zip(ways.swapaxes(0, 1), others.at(time), others.actors, strict=True):
-        colour = COLOURS[actor.kind][1]
+    for number, (way, state, actor) in enumerate(
+        zip(ways.swapaxes(0, 1), others.at(time), others.actors, strict=True)
+    ):
+        name, colour = COLOURS[actor.kind]
         way = way[~np.isnan(way[:, 0])]
         if len(way) > 1 and np.ptp(way, axis=0).max() > 0.5:
             pieces = np.stack([way[:-1], way[1:]], axis=1)
             shades = [(*to_rgb(colour), alpha) for alpha in np.linspace(0.05, 0.75, len(pieces))]
             axes.add_collection(LineCollection(list(pieces), colors=shades, linewidths=2.0, zorder=7.6))
         if not np.isnan(state[X]):
-            box = corners(state, actor.size)
-            larger = max(1.0, least / max(actor.size[:2]))
-            middle = state[[X, Y]]
-            axes.add_patch(_box(middle + larger * (box - middle), colour))
-    own = run.drive.corners(_step(run, time))
+            half = max(1.0, least / max(actor.size[:2])) * np.array(actor.size[:2]) / 2
+            outline = np.array(SHAPES.get(name, ("s", BOX))[1])
+            axes.add_patch(_box(turned(outline * half, state[HEADING]) + state[[X, Y]], colour))
+            if _brakes(others, number, time):
+                _lit(axes, turned(np.array(BOX) * half, state[HEADING]) + state[[X, Y]])
+    step = _step(run, time)
+    own = run.drive.corners(step)
     middle = own.mean(axis=0)
-    axes.add_patch(_box(middle + max(1.0, least / run.drive.car.length) * (own - middle), INK))
+    own = middle + max(1.0, least / run.drive.car.length) * (own - middle)
+    axes.add_patch(_box(own, INK))
+    if run.drive["brake"][step] > PRESSED:
+        _lit(axes, own)
+    contact = first_contact(run)
+    if contact is not None and contact.contact is not None:
+        axes.plot(*contact.contact.xy, **STAR)
+
+
+def _brakes(others: Tracks, number: int, time: float) -> bool:
+    """Whether a vehicle slows down at a time, or stands and once moved."""
+    if others.actors[number].kind not in VEHICLES:
+        return False
+    speeds = np.abs(others.at(time + np.array([-AROUND, 0.0, AROUND]))[:, number, SPEED])
+    stands = speeds[1] < STILL and np.nanmax(np.abs(others.states[:, number, SPEED])) > STILL
+    return bool(stands or speeds[0] - speeds[2] > SLOWS * 2 * AROUND)
+
+
+def _lit(axes: Axes, box: Array) -> None:
+    """Draws brake lights along the rear edge of a box, of corners as in BOX."""
+    axes.plot(*box[[0, 3]].T, color=RED, lw=2.4, solid_capstyle="butt", zorder=8.7)
 
 
 def key_of(run: Run) -> list[tuple[str, float, dict[str, Any]]]:
@@ -96,8 +134,12 @@ def key_of(run: Run) -> list[tuple[str, float, dict[str, Any]]]:
         return []
     kinds = {actor.kind for actor in others.actors}
     named = dict(look for kind, look in COLOURS.items() if kind in kinds)
-    style = {"marker": "s", "ms": 6, "mec": "white", "mew": 0.6, "ls": "none", "markevery": [0]}
-    return [(name, 0.06, {**style, "mfc": colour}) for name, colour in {"tested car": INK, **named}.items()]
+    style = {"ms": 6, "mec": "white", "mew": 0.6, "ls": "none", "markevery": [0]}
+    found = [
+        (name, 0.06, {**style, "mfc": colour, "marker": SHAPES.get(name, "s")[0]})
+        for name, colour in {"tested car": INK, **named}.items()
+    ]
+    return [*found, ("brakes", 0.12, {"color": RED, "lw": 2.4})]
 
 
 def draw_contact(figure: Figure, axes: Axes, run: Run, contact: Incident) -> None:
@@ -144,7 +186,7 @@ def draw_contact(figure: Figure, axes: Axes, run: Run, contact: Incident) -> Non
             style = {"arrowstyle": "-|>", "color": "white", "lw": 1.3, "shrinkA": 0, "shrinkB": 0}
             arrow = {**style, "path_effects": around}
             axes.annotate("", tip, edge, arrowprops=arrow, zorder=9, annotation_clip=True)
-    axes.plot(*found.xy, "o", ms=5, mfc=VERMILLION, mec="white", mew=1.0, zorder=10)
+    axes.plot(*found.xy, **STAR)
     _name(axes, frame, boxes, names, speeds, colours)
 
 

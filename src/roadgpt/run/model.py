@@ -23,8 +23,9 @@ if TYPE_CHECKING:
     from roadgpt.drive import Drive
     from roadgpt.verdict import Verdict
 
-Outcome = Literal["PASS", "FAIL", "INVALID", "ERROR", "VALID"]
-"""The outcome of a Run. VALID: the road breaks no rule and was not driven."""
+Outcome = Literal["PASS", "FAIL", "UNAVOIDABLE", "INVALID", "ERROR", "VALID"]
+"""The outcome of a Run. UNAVOIDABLE: a collision that no careful driver could have avoided, which is no
+failure. VALID: the road breaks no rule and was not driven."""
 SEED_BITS = 53  # so that a seed survives every JSON reader
 
 

@@ -2,10 +2,11 @@
 
 The images are drawn by a software rasteriser in compiled code, without a display or graphics driver. The same
 pose always gives the same bytes. The scene of a road has asphalt and markings, shoulders and embankments,
-posts, terrain that follows the road, trees, a sky with haze, and optionally a car. Road checks and vehicle
-physics use only the road; everything else is scenery."""
+posts, terrain that follows the road, trees, a sky with haze, and optionally cars and others. Road checks and
+vehicle physics use only the road; everything else is scenery."""
 
+from roadgpt.scene.bodies import Body
 from roadgpt.scene.camera import MOUNTS, Camera, CameraPlacement, CameraPose, Mount, Pose
 from roadgpt.scene.scene import Scene
 
-__all__ = ["MOUNTS", "Camera", "CameraPlacement", "CameraPose", "Mount", "Pose", "Scene"]
+__all__ = ["MOUNTS", "Body", "Camera", "CameraPlacement", "CameraPose", "Mount", "Pose", "Scene"]

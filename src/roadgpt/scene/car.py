@@ -155,7 +155,7 @@ def trim() -> Iterator[Patch]:
         for side in (-1.0, 1.0):
             yield _disc(ahead, side * 0.934, CAR.wheel / 2 + 0.01, 0.385, TRIM)
     for side in (-1.0, 1.0):
-        yield from _box(np.array([0.74, side * 0.985, 1.0]), np.array([0.09, 0.11, 0.065]), PAINT)
+        yield from box(np.array([0.74, side * 0.985, 1.0]), np.array([0.09, 0.11, 0.065]), PAINT)
 
 
 def lamps() -> Iterator[Patch]:
@@ -197,7 +197,8 @@ def _disc(x: float, y: float, z: float, radius: float, kind: int) -> Patch:
     return part._replace(attributes=np.tile([0.0, np.sign(y), 0.0], (50, 1)))
 
 
-def _box(middle: Array, half: ArrayLike, kind: int) -> Iterator[Patch]:
+def box(middle: Array, half: ArrayLike, kind: int) -> Iterator[Patch]:
+    """Yields the faces of a box; the attributes of their points are normals."""
     for axis in range(3):
         for sign in (-1.0, 1.0):
             u, v, w = (np.eye(3)[(axis + k) % 3] * np.asarray(half) for k in range(3))

@@ -2,7 +2,7 @@
 
 import math
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -14,6 +14,7 @@ from roadgpt.network import network_of
 from roadgpt.network.surface import NetworkSurface
 from roadgpt.road import Road, World
 from roadgpt.road.land import LONGEST_STEP, Land
+from roadgpt.scene.bodies import Body, mesh_of
 from roadgpt.scene.camera import Camera, Pose, axes_of
 from roadgpt.scene.car import palette_of, saloon
 from roadgpt.scene.light import screen_table
@@ -71,14 +72,22 @@ class Scene:
         patches, lanes = patches_of(road, world, land)
         return cls(road, world, land, Mesh.of(patches), trees, lanes, Weather.of(world.scene, road))
 
-    def render(self, camera: Camera, pose: Pose, out: Image | None = None, car: Pose | None = None) -> Image:
+    def render(
+        self,
+        camera: Camera,
+        pose: Pose,
+        out: Image | None = None,
+        car: Pose | None = None,
+        others: Sequence[Body] = (),
+    ) -> Image:
         """Returns an RGB image ``(height, width, 3)`` of bytes, as the camera on a car at ``pose`` sees it.
 
         Args:
             camera: the camera.
             pose: pose of the car that carries the camera.
             out: contiguous array of bytes to write the image to; None for a new array.
-            car: pose of the car that is drawn, with its shadow; None to draw no car."""
+            car: pose of the car that is drawn, with its shadow; None to draw no car.
+            others: the others on the road."""
         if not all(np.abs(each).max() <= FARTHEST for each in (pose, car) if each is not None):
             raise UsageError("a number of a pose is not finite, or beyond 10,000 km")
         shape = (camera.height, camera.width, 3)
@@ -86,12 +95,13 @@ class Scene:
             out = np.empty(shape, np.uint8)
         if out.shape != shape or out.dtype != np.uint8:
             raise UsageError(f"out must be an array of bytes of shape {shape}")
-        buffers = self._buffers(camera)
         eye = camera.eye(pose)
         numbers = np.concatenate([eye.position, eye.axes.ravel(), [eye.focal]])
+        meshes = [self.ground, *([] if car is None else [saloon().placed(car, eye)])]
+        meshes += [mesh_of(others)] if others else []
+        buffers = self._buffers(camera, sum(len(mesh.triangles) for mesh in meshes))
         buffers.depth.fill(0.0)
         buffers.ids.fill(-1)
-        meshes = [self.ground, *([] if car is None else [saloon().placed(car, eye)])]
         count = 0
         for mesh in meshes:
             count = draw(mesh, numbers, buffers, count)
@@ -105,12 +115,11 @@ class Scene:
         to_screen(buffers.picture, screen_table(), out)
         return out
 
-    def _buffers(self, camera: Camera) -> RenderBuffers:
+    def _buffers(self, camera: Camera, count: int) -> RenderBuffers:
         key = (camera.width, camera.height)
         kept: dict[tuple[int, int], RenderBuffers] = self._own.__dict__.setdefault("sheets", {})
-        if key not in kept:
+        if key not in kept or len(kept[key].kinds) < count:
             high, wide = camera.height, camera.width
-            count = len(self.ground.triangles) + len(saloon().mesh.triangles)
             kept[key] = RenderBuffers(
                 np.empty((SAMPLES * high, wide), np.float32),
                 np.empty((SAMPLES * high, wide), np.int32),

@@ -2,14 +2,17 @@
 the tested car."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from roadgpt.brief.scene import ActorKind
+
+if TYPE_CHECKING:
+    from roadgpt.scene import Body
 
 FloatArray = NDArray[np.float64]
 STEP = 0.1  # s, from one sample of a track to the next; UN R157's simulations use the same step
@@ -104,6 +107,12 @@ class Tracks:
 
     def __len__(self) -> int:
         return len(self.states)
+
+
+def bodies(actors: Sequence[Actor], states: FloatArray) -> "list[Body]":
+    """Returns the bodies of actors, for images, from their states, shape (actors, 5)."""
+    found = zip(actors, states.tolist(), strict=True)
+    return [(each.kind, each.size, state[:SPEED]) for each, state in found if not math.isnan(state[X])]
 
 
 def rounded(states: FloatArray) -> FloatArray:

@@ -49,6 +49,7 @@ HORIZON = 150.0  # m
 LINE = 1.0  # m, between the front of a waiting vehicle and the line
 CHANGE = 4.0  # s
 LEAST_WAY = 15.0  # m, of way that a change takes at least
+FASTER = 2.0  # m/s, by which one may become faster during a change that has to be done before a junction
 EVERY = 10  # steps, after which a vehicle considers a change again
 SLOWEST_CHANGE = 3.0  # m/s, below which nobody changes lanes without need
 GAIN = 0.3  # m/s^2, by which a change has to pay
@@ -209,7 +210,7 @@ def _holds(
 
 
 @inlined
-def _time_over(v: float, way: float, top: float, pull: float) -> float:
+def time_over(v: float, way: float, top: float, pull: float) -> float:
     """Returns the seconds that a vehicle needs for some metres when it accelerates up to a speed."""
     if v >= top:
         return way / max(v, 0.1)
@@ -242,20 +243,33 @@ def _comes_before(
     if j != TESTED:
         if waits > PATIENCE and (before < 0 or line > v * v / (2.0 * EASY) + 5.0):
             return False
-        goes_first = waits > numbers[j, WAIT] or (waits == numbers[j, WAIT] and i < j)
-        if v < STANDING and waits > TURN and goes_first:
+        if v < STANDING and waits > TURN:  # if it has waited longer, it was asked before, and cannot go
             return False
     return bool((line + first) / max(v, 3.0) < leaves + MARGIN)
 
 
 @compiled
 def _has_room(
-    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, i: int, k: int, ahead: float,
-    entries: FloatArray, count: int,
+    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, present: int, i: int, k: int,
+    ahead: float, entries: FloatArray, count: int,
 ) -> bool:  # fmt: skip
     """Returns whether a vehicle finds room behind lane ``k`` of its way, so that it does not stand in the
-    junction."""
+    junction: also if all who are there, or have a grant to come there, queue before the next junction;
+    and also for who has waited longer, and too long."""
     needed, far = numbers[i, LENGTH] + JAM, 0.0
+    there = ways[i, min(k + 1, whole[i, LAST] - 1)]
+    if lanes.onward_of[there] < lanes.onward_of[there + 1]:
+        queue = 0.0
+        for j in range(present):
+            if j != i and (whole[j, STATE] == DRIVES or whole[j, STATE] == STANDS_HIT):
+                last = max(whole[j, AT], whole[j, GRANTED] + 1)
+                if numbers[j, WAIT] > max(numbers[i, WAIT], PATIENCE):  # else cars leave no room for a bus
+                    last = max(last, whole[j, AT] + 2)
+                for q in range(whole[j, AT], min(last, whole[j, LAST] - 1) + 1):
+                    if ways[j, q] == there:
+                        queue += numbers[j, LENGTH] + JAM
+        if queue > 0.0 and queue + needed > lanes.stop[there]:
+            return False
     for q in range(k + 1, min(k + 3, whole[i, LAST])):
         for n in range(count):
             is_slow = entries[n, 0] == ways[i, q] and entries[n, 4] != i and entries[n, 3] < 3.0
@@ -295,7 +309,7 @@ def _may_enter(
             if is_there and not leads:  # who leads, with its rear still there, is followed
                 return False
         until = max(ahead, 0.0) + lanes.conflict_at[c, 1] + row[LENGTH] / 2.0
-        leaves = _time_over(row[V], until, slowest, row[PULL])
+        leaves = time_over(row[V], until, slowest, row[PULL])
         for j in range(present):
             if j == i or whole[j, STATE] != DRIVES:
                 continue
@@ -307,7 +321,7 @@ def _may_enter(
                 return False
     if begin == end or lanes.leaves_ring[lane]:  # in a ring everybody moves up, or it would stand for ever
         return True
-    return _has_room(lanes, numbers, whole, ways, i, k, ahead, entries, count)
+    return _has_room(lanes, numbers, whole, ways, present, i, k, ahead, entries, count)
 
 
 @compiled
@@ -397,8 +411,9 @@ def _change(
     if target < 0 or (lanes.ends[target] and not must):
         return -math.inf
     s = across(lanes, lane, row[S], target)
-    way = max(row[V] * CHANGE, LEAST_WAY)
-    if s < lanes.usable[target, 0] + row[LENGTH] or (not must and s + way > lanes.usable[target, 1]):
+    way = max((row[V] + FASTER) * CHANGE, LEAST_WAY)
+    end = min(lanes.usable[target, 1], lanes.stop[target] - LINE - row[LENGTH] / 2.0)
+    if s < lanes.usable[target, 0] + row[LENGTH] or (not must and s + way > end):
         return -math.inf
     limit, best = (
         URGENT if must else SAFE,
@@ -605,7 +620,8 @@ def step(
         whole: Whole numbers of the vehicles, changed in place.
         ways: The lanes of each vehicle's way, changed in place where it changes lanes.
         present: The number of rows in use.
-        states: Where the vehicles are, ``(present, 5)``; that of the tested car is in row TESTED.
+        states: Where the vehicles are, ``(present, 5)``, changed in place; that of the tested car is in row
+            TESTED.
         bodies: Others whom this step does not move: states, length and width, ``(m, 7)``.
         lights: GREEN, YELLOW or RED for each lane.
         entries: Room for the boxes in lanes: lane, first and last station, speed along it, and whose.
@@ -636,6 +652,7 @@ def step(
     for i in range(present):
         if i != TESTED and (whole[i, STATE] == DRIVES or whole[i, STATE] == STANDS_HIT):
             _move(lanes, numbers[i], whole[i], ways[i])
+    positions(lanes, numbers, whole, ways, present, states)
 
 
 @compiled

@@ -20,9 +20,9 @@ CELL = 2.0  # m, side of the cells in which samples are looked up
 LEAST = 2.4  # m, width of a lane from which on vehicles use it
 TOUCH = 0.15  # m by which a box has to reach into a lane to count as being in it
 APART = 0.8  # m, most between the points of a box that are looked up
-PX, PY, PZ, PH, PW, PV = range(6)
+PX, PY, PZ, PH, PW, PV, PC, PS = range(8)
 """Columns of a sample: place in metres, heading in radians (unwrapped along its lane), half the lane's width
-in metres, and the highest speed in m/s of its bend."""
+in metres, the highest speed in m/s of its bend, and cosine and sine of the heading."""
 WIDEST = 2.5  # m, width of the widest vehicles
 OVER = 0.2  # m, by which the corner of a vehicle may reach over the edge of its lane in a bend
 ACROSS = 2.0  # m/s^2, lateral acceleration of others in bends; ISO 11270 allows lane keeping 3
@@ -32,9 +32,11 @@ class LaneMap(NamedTuple):
     """The lanes as arrays; a lane is its number in ``ids``, the ids of the network's lanes."""
 
     sample: FloatArray
-    """Shape (samples, 6), lane after lane, see PX."""
+    """Shape (samples, 8), lane after lane, see PX."""
     first: IntArray
     """The first sample of each lane and, as the last entry, the number of samples."""
+    lane_of: IntArray
+    """The lane of each sample."""
     station: FloatArray
     """The station on its road of each sample, counted in the direction of its lane."""
     step: FloatArray
@@ -116,6 +118,7 @@ def _made(lanes: Lanes, limit: float, kept: frozenset[Leg] | None) -> tuple[Lane
     return LaneMap(
         table,
         first,
+        np.repeat(np.arange(len(used)), np.diff(first)),
         np.concatenate(stations),
         np.array(steps),
         np.array([lane.length for lane in used]),
@@ -163,7 +166,8 @@ def _sampled(lane: Lane) -> tuple[FloatArray, float, tuple[float, float]]:
     speed = np.sqrt(ACROSS / np.maximum(bend, 1e-6))
     wide = np.flatnonzero(width >= LEAST)
     stretch = (float(s[wide[0]]), float(s[wide[-1]])) if len(wide) else (0.0, 0.0)
-    return np.column_stack([place, heading, width / 2, speed]), step, stretch
+    turned = [(math.cos(each), math.sin(each)) for each in heading.tolist()]
+    return np.column_stack([place, heading, width / 2, speed, turned]), step, stretch
 
 
 def _beside(lane: Lane, side: str, number: dict[Leg, int]) -> int:
@@ -311,13 +315,11 @@ def touched(
             cell = row * int(lanes.grid[2]) + column
             for at in range(lanes.cell_of[cell], lanes.cell_of[cell + 1]):
                 k = lanes.cells[at]
-                one = lanes.sample[k]
-                dx, dy = px - one[PX], py - one[PY]
-                ch, sh = math.cos(one[PH]), math.sin(one[PH])
-                if abs(dy * ch - dx * sh) > one[PW]:
+                dx, dy = px - lanes.sample[k, PX], py - lanes.sample[k, PY]
+                ch, sh = lanes.sample[k, PC], lanes.sample[k, PS]
+                if abs(dy * ch - dx * sh) > lanes.sample[k, PW]:
                     continue
-                lane = np.searchsorted(lanes.first, k, side="right") - 1
-                ahead = dx * ch + dy * sh
+                lane, ahead = lanes.lane_of[k], dx * ch + dy * sh
                 if abs(ahead) > 0.51 * lanes.step[lane]:
                     continue
                 station = (k - lanes.first[lane]) * lanes.step[lane] + ahead
@@ -330,7 +332,8 @@ def touched(
                         return count
                     found = count
                     entries[found, 0], entries[found, 1], entries[found, 2] = lane, station, station
-                    entries[found, 3], entries[found, 4] = speed * math.cos(heading - one[PH]), body
+                    entries[found, 3] = speed * math.cos(heading - lanes.sample[k, PH])
+                    entries[found, 4] = body
                     count += 1
                 entries[found, 1] = min(entries[found, 1], station)
                 entries[found, 2] = max(entries[found, 2], station)

@@ -32,6 +32,7 @@ TURNS: Mapping[What, tuple[float, float, tuple[bool, ...]]] = {
     "run_sign": (0.0, math.pi, (False, True)),
     "turn_across": (OPPOSITE, math.pi, (False,)),
     "turn_in": (STRAIGHT_AHEAD, math.pi, (True,)),
+    "merge": (0.0, OPPOSITE, (True,)),
 }
 """By what angles somebody turns in a junction, the least and the most, and whether into the tested car's
 lane."""
@@ -196,25 +197,19 @@ def _on_ring(role: Role, around: Around) -> Iterator[Way | None]:
         if (ring := network.roundabout_of.get(passage.entered.id)) is None:
             continue
         own = around.route.legs[around.route.legs.index(around.before(passage)) :]
-        back = [next(each for each in own if each.road in ring.ring)]
-        while True:
-            more = [
-                each
-                for each in around.lanes[back[-1]].predecessors
-                if each.road in ring.ring or network.connection_of[each.road][1].incoming.road in ring.ring
-            ]
-            if not more or more[0] in back:
-                break
-            back.append(more[0])
-        for _, onward in around.turns(passage, back[0]):
-            if onward[-1].road != passage.departure.road:
-                yield around.met((*back[:0:-1], *onward), passage, max(len(back) - 2, 0))
+        entry = next(each for each in own if each.road in ring.ring)
+        for each in around.lanes[entry].successors:
+            loop = around.lanes.shortest(each, entry, "changes")
+            if not loop or any(network.roundabout_of.get(leg.road) is not ring for leg in loop):
+                continue
+            for _, onward in around.turns(passage, entry):
+                if onward[-1].road != passage.departure.road:
+                    yield around.met((*loop[:-1], *onward), passage, len(loop) - 2)
 
 
 def _from_ramp(role: Role, around: Around) -> Iterator[Way | None]:
     """Yields the ways along a lane that ends beside the tested car's, such as one for acceleration behind a
     ramp, and into that; and along a ramp that joins it without such a lane."""
-    del role
     lanes, legs = around.lanes, around.route.legs
     for own in map(lanes.__getitem__, legs):
         for key in (own.left, own.right):
@@ -224,11 +219,8 @@ def _from_ramp(role: Role, around: Around) -> Iterator[Way | None]:
                 wide = s[lanes[key].width(s) >= LEAST]
                 if len(wide):
                     yield _into(around, Way(points), begin + wide[0], begin + wide[-1])
-    for passage in around.passages:
-        for end in passage.arms[1:] if passage.entered.kind == "merge" else ():
-            for each in around.route.network.lanes_into(end):
-                for _, onward in around.turns(passage, Leg(end.road, each)):
-                    yield around.met(onward, passage) if onward[-1] in legs else None
+    merges = [each for each in around.passages if each.entered.kind == "merge"]
+    yield from _through_junction(role, around._replace(passages=merges))
 
 
 def _into(around: Around, way: Way, begin: float, end: float) -> Way | None:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 BESIDE = 2.0  # m, from the outermost driving lane to the middle of who stands or walks beside it
 CLEAR = 0.15  # m, from a driving lane to a parked vehicle: 1 m to a car in a lane of 3.5 m (Euro NCAP, CPNCO)
+KERB = 0.1  # m, between the lanes and who stands before a crosswalk
 BEFORE, BEHIND = 5.0, 8.0  # m, from a junction to those who cross the road before and behind it
 DRIVEWAY = 6.0  # m, radius in which somebody turns from beside the road into a lane
 PLACE = 7.0  # m of a row for each parked vehicle: at least 6.5 m, of a delivery van
@@ -124,7 +125,8 @@ def _across(role: Role, s: float, road: "Road", world: "World") -> Way:
     edges, rims, middle = profile.edges(s), profile.rims(s), float(profile.middle(s))
     reach = {"left": float(edges.left) - middle, "right": middle - float(edges.right)}
     side = str(role.side or ("left" if profile.left_hand else "right"))
-    beyond = max(BESIDE, SIZES[role.kind].length / 2 + 1.0)
+    half = SIZES[role.kind].length / 2
+    beyond = half + KERB if role.where == "crosswalk" else max(BESIDE, half + 1.0)
     begin = span(role.away).lo if role.away else reach[side] + beyond
     end = reach["right" if side == "left" else "left"] + beyond
     across = np.linspace(begin, -end, math.ceil((begin + end) / SPACING) + 1)

@@ -110,7 +110,9 @@ class Traffic:
 
     def tracks(self) -> Tracks:
         """Returns how everybody moved who was there at some time."""
-        states = np.array([self._whole(number) for number in range(len(self._samples))])
+        states = np.full((len(self._samples), len(self.actors), 5), np.nan)
+        for whole, sample in zip(states, self._samples, strict=True):
+            whole[: len(sample)] = sample
         was_there = np.flatnonzero(~np.isnan(states[:, :, 0]).all(axis=0))
         return Tracks(tuple(self.actors[number] for number in was_there), states[:, was_there])
 

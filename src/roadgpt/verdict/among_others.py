@@ -9,6 +9,7 @@ The kinds of incidents:
 - blocked: the tested car stands (below 0.1 m/s) for 30 s with nobody within 10 m ahead in its lane, our
   definition;
 - out of lane, on a single road: as in ``verdict.oracle``; on a route it is one of ``verdict.incidents``;
+- red light, failure to yield, on a route: see ``verdict.right_of_way``;
 - speeding: more than 5 % and more than 1 m/s above the limit of the lane for 1 s, our definition.
 
 An incident begins at the first step at which its condition holds. Near misses with the same other within 3 s
@@ -20,10 +21,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.network import legs_of, network_of, only_road
+from roadgpt.drive.outlook import limits_of
+from roadgpt.network import only_road
 from roadgpt.verdict.contact import contacts_of
 from roadgpt.verdict.measures import measure
 from roadgpt.verdict.oracle import is_outside
+from roadgpt.verdict.right_of_way import taken
 from roadgpt.verdict.verdict import STANDS, Incident, IncidentKind
 
 if TYPE_CHECKING:
@@ -59,6 +62,8 @@ def incidents_among_others(road: "Road", drive: "Drive", world: "World") -> tupl
             _at(drive, "out of lane", time)
             for time in _lasting(drive["time"], is_outside(road, drive, world))
         ]
+    else:
+        found += [_at(drive, *wrong) for wrong in [*taken(road, drive, world, found)]]
     is_free = measured.gap.min(axis=1, initial=np.inf) > FREE
     found += [
         _at(drive, "blocked", time) for time in _lasting(measured.time, (speed < STOOD) & is_free, PATIENCE)
@@ -71,11 +76,8 @@ def incidents_among_others(road: "Road", drive: "Drive", world: "World") -> tupl
 
 def limits_along(road: "Road", drive: "Drive", world: "World") -> NDArray[np.float64]:
     """Returns the speed limit in m/s of the lane that the tested car is to follow, at every step."""
-    network, legs = network_of(road, world), legs_of(road, world)
-    lanes = (network.road(leg.road).profile.lanes[leg.lane] for leg in legs)
-    limits = [lane.speed_limit or world.limits.speed_limit for lane in lanes]
-    starts = road.starts[1 : len(legs)]
-    return np.asarray(np.array(limits)[np.searchsorted(starts, drive["s"], "right")])
+    starts, limits = zip(*(limits_of(road, world) or [(0.0, world.limits.speed_limit)]), strict=True)
+    return np.asarray(np.array(limits)[np.searchsorted(starts[1:], drive["s"], "right")])
 
 
 def _at(drive: "Drive", kind: IncidentKind, time: float, other: str | None = None) -> Incident:

@@ -10,7 +10,7 @@ from roadgpt.errors import UsageError
 from roadgpt.network import only_road
 from roadgpt.road.world import share_in_words
 from roadgpt.verdict.oracle import EPSILON, consult, has_departed, is_outside, margins
-from roadgpt.verdict.verdict import STANDS, Cause, Face, Incident, Side, Verdict, percent
+from roadgpt.verdict.verdict import STANDS, Cause, Face, Incident, Outcome, Side, Verdict, percent
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
@@ -30,6 +30,8 @@ INCIDENTS: dict[str, str] = {
     "wrong way": "against the direction of its lane",
     "off road": "a wheel off the road",
     "stop line": "no stop at a stop sign",
+    "red light": "past a red light",
+    "failure to yield": "no giving way",
     "collision": "a contact",
     "near miss": "a near miss",
     "blocked": "standing for 30 s before a free way",
@@ -41,8 +43,8 @@ FACES: dict[Face, str] = {"front": "front", "rear": "rear", "left": "left side",
 LEAST = 0.005  # m; smaller distances beyond a marking are not stated
 
 # The competition's own words, to which it adds the name of the simulation. For the competition, a car that
-# falls has left the lane. The competition has neither stop signs nor others on the road, so the words for a
-# collision are ours.
+# falls has left the lane. The competition has neither signs, lights nor others on the road, so the words for
+# a collision are ours.
 SBFT: dict[Cause | None, str] = {
     None: "Successful test",
     "out of lane": "Car drove out of the lane",
@@ -53,9 +55,13 @@ SBFT: dict[Cause | None, str] = {
     "wrong turn": "Car drove out of the lane",
     "wrong way": "Car drove out of the lane",
     "stop line": "Successful test",
+    "red light": "Successful test",
+    "failure to yield": "Successful test",
 }
 
-FAILING: tuple[Cause, ...] = ("collision", "wrong turn", "wrong way", "stop line")
+FAILING: tuple[Cause, ...] = (
+    "collision", "wrong turn", "wrong way", "stop line", "red light", "failure to yield",
+)  # fmt: skip
 """The kinds of incidents that fail a test: if nothing else failed, or, with others on the road, if they came
 first. The kind of the first such incident is then the cause. A tyre off the road, near misses, standing and
 speeding fail no test.
@@ -69,6 +75,8 @@ FAILED: dict[Cause, str] = {
     "wrong turn": "took a wrong turn {reached} {fast}",
     "wrong way": "drove against the direction of its lane {reached} {fast}",
     "stop line": "did not stop at the stop sign {reached}: it crossed the line {fast}",
+    "red light": "ran a red light {reached}: it crossed the line {fast}",
+    "failure to yield": "did not give way to {whom} {reached}: it entered the junction {fast}",
     "collision": "{contact}",
     "stuck": "was stuck {reached}: it moved less than 1 m in 10 s",
     "timeout": "ran out of time {reached} of {length:.0f} m",
@@ -91,7 +99,8 @@ def judge(
     missed stop is the failure. A tyre off the road is counted but fails no test.
 
     With others on the road, ``incidents`` also lists what ``roadgpt.verdict.among_others`` defines. Then the
-    earliest of all failures is the cause, and a contact within 3 s is told in the same sentence.
+    earliest of all failures is the cause, and a contact within 3 s is told in the same sentence. A collision
+    that no careful driver could have avoided, as ``roadgpt.verdict.avoidable`` defines it, is UNAVOIDABLE.
 
     ``known`` is the step that decides and the cause of failure, or None, if an earlier verdict has them;
     with others on the road they are found again.
@@ -127,14 +136,22 @@ def judge(
     if cause is None:
         description = _kept(drive, world, least, beyond)
     else:
-        description = _failed(road, drive, world, step, cause, side, contact)
+        whom = next((each.other for each in incidents or () if each.kind == cause), None)
+        description = _failed(road, drive, world, step, cause, side, contact, whom)
     untold = [each for each in incidents or () if each is not contact or cause == "collision"]
     description += _counted(untold, cause) + _who_drove(drive.shares, handed_to)
     s, x, y, time = (float(drive[name][step]) for name in ("s", "x", "y", "time"))
+    outcome: Outcome = "FAIL" if cause else "PASS"
+    avoided_by: tuple[str, ...] | None = None
     if cause == "collision" and contact is not None:
+        from roadgpt.verdict.avoidable import avoidance_of
+
+        is_avoidable, avoided_by, said = avoidance_of(road, drive, world, contact)
+        outcome = "FAIL" if is_avoidable else "UNAVOIDABLE"
+        description += f"; {said}"
         s, (x, y), time = contact.at_s, contact.at_xy, contact.at_time
     return Verdict(
-        outcome="FAIL" if cause else "PASS",
+        outcome=outcome,
         cause=cause,
         description=description,
         sbft_description=SBFT[cause],
@@ -148,6 +165,7 @@ def judge(
         side=side,
         incidents=incidents,
         own_share=drive.shares.get(drive.driver),
+        avoided_by=avoided_by,
         handed_to=handed_to,
     )
 
@@ -243,6 +261,7 @@ def _failed(
     cause: Cause,
     side: Side | None,
     contact: Incident | None,
+    whom: str | None,
 ) -> str:
     profile = world.profile_of(road)
     is_beside = (
@@ -262,6 +281,7 @@ def _failed(
         fast=f"at {drive['speed'][step] * 3.6:.0f} km/h",
         how="" if contact else f": {how}",
         length=road.length,
+        whom=whom,
         contact=_touched(contact, f"after {contact.at_s:.0f} m") if contact else "hit somebody",
     )
     if contact is None or cause == "collision":

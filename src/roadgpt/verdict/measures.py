@@ -73,8 +73,8 @@ class Measures:
 
 
 @dataclass(frozen=True, eq=False)
-class _Boxes:
-    """Boxes on a road that is straightened along the middle of the driven lane; metres, radians, m/s."""
+class Boxes:
+    """Boxes along a Line, and across it; metres, radians, m/s."""
 
     along: FloatArray
     t: FloatArray
@@ -82,9 +82,9 @@ class _Boxes:
     half: FloatArray  # (..., 2): half of length and width
     velocity: FloatArray  # (..., 2): along and across
 
-    def __getitem__(self, rows: NDArray[np.int64]) -> "_Boxes":
+    def __getitem__(self, rows: NDArray[np.int64]) -> "Boxes":
         parts = (self.along, self.t, self.heading, self.half, self.velocity)
-        return _Boxes(*(each[rows] for each in parts))
+        return Boxes(*(each[rows] for each in parts))
 
     @property
     def reach(self) -> tuple[FloatArray, FloatArray]:
@@ -109,7 +109,7 @@ def measure(road: "Road", drive: "Drive", world: "World") -> Measures:
     near = level & (np.hypot(away[..., 0], away[..., 1]) < NEAR)  # false for NaN
     step, who = np.nonzero(near)
     sizes = np.array([each.size[:2] for each in drive.others.actors]).reshape(-1, 2) / 2
-    lane = _Lane(road, world)
+    lane = driven_lane(road, world)
     half = np.broadcast_to(np.array([drive.car.length, drive.car.width]) / 2, (len(time), 2))
     car = lane.boxes(x, y, heading, half, np.abs(speed), slip)
     found = states[near]
@@ -150,20 +150,19 @@ def measure(road: "Road", drive: "Drive", world: "World") -> Measures:
     )
 
 
-class _Lane:
-    """The driven lane of a road, straightened along its middle."""
+class Line:
+    """A line on the ground that is straightened, with the width in metres of the strip along it; before its
+    begin and after its end it goes straight on. ``points`` (n, 3) are x, y, z, about ALONG apart."""
 
-    def __init__(self, road: "Road", world: "World") -> None:
+    def __init__(self, points: FloatArray, width: FloatArray) -> None:
         from scipy.spatial import cKDTree
 
-        profile = world.profile_of(road)
-        s = np.linspace(0.0, road.length, max(2, int(road.length / ALONG) + 1))
-        self.middle, self.width = road.at(s, profile.middle(s))[:, :2], profile.width(s)
+        self.middle, self.z, self.width = points[:, :2], points[:, 2], width
         steps = np.diff(self.middle, axis=0)
         self.run = np.concatenate([[0.0], np.cumsum(np.hypot(*steps.T))])
         self.heading = np.unwrap(np.arctan2(*np.gradient(self.middle, self.run, axis=0).T[::-1]))
         self.curvature = np.gradient(self.heading, self.run)
-        self.curvature[[0, -1]] = 0.0  # it goes straight on before its start and after its end
+        self.curvature[[0, -1]] = 0.0
         self.tree = cKDTree(self.middle)
 
     def boxes(
@@ -174,7 +173,8 @@ class _Lane:
         half: FloatArray,
         speed: FloatArray,
         slip: FloatArray | float = 0.0,
-    ) -> _Boxes:
+    ) -> Boxes:
+        """Returns boxes at these places; ``slip`` is that of their motion against their heading."""
         _, i = self.tree.query(np.stack([x, y], axis=-1))
         cos, sin = np.cos(self.heading[i]), np.sin(self.heading[i])
         dx, dy = x - self.middle[i, 0], y - self.middle[i, 1]
@@ -184,11 +184,27 @@ class _Lane:
         t = t - bend * ahead**2 / (2 * np.maximum(1 - bend * t, LEAST_STRETCH))
         way = np.asarray(wrap_angle(heading - np.interp(along, self.run, self.heading)))
         velocity = speed[:, None] * np.stack([np.cos(way + slip), np.sin(way + slip)], axis=-1)
-        return _Boxes(along, t, way, half, velocity)
+        return Boxes(along, t, way, half, velocity)
 
-    def holds(self, boxes: _Boxes) -> BoolArray:
-        """Whether a box reaches into the lane."""
+    def at(self, along: FloatArray, t: FloatArray | float = 0.0) -> FloatArray:
+        """Returns the points (..., 3) ``t`` metres to the left of the line."""
+        within = np.clip(along, 0.0, self.run[-1])
+        x, y, z, heading = (
+            np.interp(within, self.run, each) for each in (*self.middle.T, self.z, self.heading)
+        )
+        cos, sin, beyond = np.cos(heading), np.sin(heading), along - within
+        return np.stack([x + beyond * cos - t * sin, y + beyond * sin + t * cos, z], axis=-1)
+
+    def holds(self, boxes: Boxes) -> BoolArray:
+        """Whether a box reaches into the strip."""
         return np.asarray(np.abs(boxes.t) - boxes.reach[1] < np.interp(boxes.along, self.run, self.width) / 2)
+
+
+def driven_lane(road: "Road", world: "World") -> Line:
+    """Returns the middle of the lane that the tested car is to follow."""
+    profile = world.profile_of(road)
+    s = np.linspace(0.0, road.length, max(2, int(road.length / ALONG) + 1))
+    return Line(road.at(s, profile.middle(s)), profile.width(s))
 
 
 def _required(gap: FloatArray, rate: FloatArray, its: FloatArray, gained: FloatArray) -> FloatArray:
@@ -203,7 +219,7 @@ def _required(gap: FloatArray, rate: FloatArray, its: FloatArray, gained: FloatA
     return np.asarray(np.where((its < 0) & (closing > 0), np.inf, needed))
 
 
-def _conflict(own: _Boxes, others: _Boxes) -> FloatArray:
+def _conflict(own: Boxes, others: Boxes) -> FloatArray:
     """Until two boxes that move evenly, without turning, touch: the last of the times at which they begin to
     overlap along the normals of their sides, if it is before the first at which they cease to."""
     away = np.stack([others.along - own.along, others.t - own.t], axis=-1)
@@ -231,7 +247,7 @@ def _conflict(own: _Boxes, others: _Boxes) -> FloatArray:
 
 
 def _pet(
-    time: FloatArray, car: _Boxes, others: _Boxes, step: NDArray[np.int64], own: BoolArray
+    time: FloatArray, car: Boxes, others: Boxes, step: NDArray[np.int64], own: BoolArray
 ) -> tuple[float, float]:
     """Returns the smallest post-encroachment time of one of the others, whose rows are ``own``, and when the
     first one had left the area."""

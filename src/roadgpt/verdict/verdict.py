@@ -16,10 +16,12 @@ from pydantic import ConfigDict, ValidationError
 from roadgpt.errors import UsageError
 from roadgpt.reading import strictly
 
-Outcome = Literal["PASS", "FAIL"]
+Outcome = Literal["PASS", "FAIL", "UNAVOIDABLE"]
+"""UNAVOIDABLE: a collision that no driver could have avoided, which is no failure."""
 Cause = Literal[
-    "out of lane", "fell", "stuck", "timeout", "collision", "wrong turn", "wrong way", "stop line"
-]
+    "out of lane", "fell", "stuck", "timeout", "collision", "wrong turn", "wrong way", "stop line",
+    "red light", "failure to yield",
+]  # fmt: skip
 Side = Literal["left", "right"]
 Face = Literal["front", "rear", "left", "right"]
 Severity = Literal["at most 10 % outside", "partly outside", "mostly outside"]
@@ -36,6 +38,8 @@ IncidentKind = Literal[
     "wrong way",
     "off road",
     "stop line",
+    "red light",
+    "failure to yield",
     "collision",
     "near miss",
     "blocked",
@@ -78,7 +82,7 @@ class Incident:
     at_time: float
     """Time in seconds since the start of the drive."""
     other: str | None = None
-    """Name of the other, of a collision or a near miss; None for other kinds."""
+    """Name of the other, of a collision, a near miss or a failure to yield; None for other kinds."""
     contact: Contact | None = None
     """How they touched in a collision; None for other kinds."""
 
@@ -102,10 +106,11 @@ class Verdict:
 
     outcome: Outcome
     cause: Cause | None
-    """Cause of the failure; None if the car kept its lane and reached the goal.
+    """Cause of the failure, or of what was unavoidable; None if the car kept its lane and reached the goal.
 
     "wrong turn", "wrong way" and "stop line" occur only on routes through junctions, if nothing else failed,
-    or if others are on the road; "collision" only if others are.
+    or if others are on the road; "collision" only if others are, and "red light" and "failure to yield" only
+    on routes with others.
     """
     description: str
     """The result of the drive in one sentence."""
@@ -146,6 +151,9 @@ class Verdict:
     """
     own_share: float | None = None
     """The share of the way, 0 to 1, that the driver drove itself; None if it never handed over."""
+    avoided_by: tuple[str, ...] | None = None
+    """Those of the four drivers of ``roadgpt.verdict.careful`` who avoid the collision that is the cause;
+    None for other causes."""
     handed_to: str | None = None
     """Who drove where the car failed, if the driver had handed over: such a failure is not one of the driver.
     None for other failures, and if the car did not fail.
@@ -171,15 +179,23 @@ class Verdict:
         """Whether the car kept its lane and reached the goal."""
         return self.outcome == "PASS"
 
+    @property
+    def failed(self) -> bool:
+        """Whether the car failed: it did not keep its lane or reach the goal, and could have."""
+        return self.outcome == "FAIL"
+
     def to_json(self) -> dict[str, Any]:
         """Returns the fields and ``kept`` as JSON data, for ``Verdict.from_json``.
 
-        The fields ``incidents``, ``own_share`` and ``handed_to`` are left out where they are None.
+        The fields ``incidents``, ``own_share``, ``avoided_by`` and ``handed_to`` are left out where they are
+        None.
         """
-        optional = {"incidents", "own_share", "handed_to"}
+        optional = {"incidents", "own_share", "avoided_by", "handed_to"}
         data = {key: value for key, value in asdict(self).items() if value is not None or key not in optional}
         if self.incidents is not None:
             data["incidents"] = [each.to_json() for each in self.incidents]
+        if self.avoided_by is not None:
+            data["avoided_by"] = list(self.avoided_by)
         data["at_xy"] = None if self.at_xy is None else list(self.at_xy)
         return {"kept": self.kept, **data}
 

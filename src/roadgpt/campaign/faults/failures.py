@@ -86,7 +86,7 @@ class FailureReason:
 
 def reason_of(run: Run) -> FailureReason:
     """Returns the reason why a Run failed."""
-    if run.verdict is None or run.drive is None or run.road is None or run.verdict.kept:
+    if run.verdict is None or run.drive is None or run.road is None or not run.verdict.failed:
         raise UsageError(f"road {run.index} did not fail; only failures have a reason")
     road, drive, verdict, world = run.road, run.drive, run.verdict, run.world
     station, friction = float(verdict.at_s or 0.0), world.site.friction

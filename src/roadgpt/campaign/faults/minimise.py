@@ -56,7 +56,7 @@ class Trial:
 
     def __init__(self, failure: Run, most: int) -> None:
         """Begins without a drive; raises UsageError if the Run did not fail or has no Design."""
-        if failure.verdict is None or failure.verdict.kept or failure.plain_design is None:
+        if failure.verdict is None or not failure.verdict.failed or failure.plain_design is None:
             raise UsageError(
                 f"road {failure.index} did not fail, or has no design without junctions; "
                 "only failing roads with such designs are simplified"

@@ -146,7 +146,7 @@ def _once(run: Run, number: int) -> Repeated:
     disturbance = disturbance_of(run.seed, number)
     try:
         verdict = outlasted(lambda: drive_disturbed(run, disturbance))
-        return Repeated(number, disturbance, not verdict.kept, verdict.margin, verdict.at_s)
+        return Repeated(number, disturbance, verdict.failed, verdict.margin, verdict.at_s)
     except (DriverError, SimulationError):
         return Repeated(number, disturbance, True, None, None)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from roadgpt.brief.visibility import visual_range
 from roadgpt.drive.drivers.reference import Reference
-from roadgpt.drive.driving_line import line_along, pedals_for, stations
+from roadgpt.drive.driving_line import lane_limits, line_along, pedals_for, stations
 from roadgpt.drive.keeping_distance import HARDEST, ROLLS, KeepingDistance, slowed
 from roadgpt.drive.view import Command, View
 
@@ -106,7 +106,7 @@ class LaneCentring:
         self._line = line_along(road, middle)
         heights = road.at(s, middle)[:, 2].tolist()
         self._heights = heights + heights[-1:] * (len(self._line.x) - len(heights))
-        self._speed_limit = world.limits.speed_limit
+        self._speed_limit, self._lane_limits = world.limits.speed_limit, lane_limits(road, world, self._line)
         self._sight = min(self.sight, visual_range(world.scene, "lane"))
         self._steps, self._bend, self._lateral, self._speed = 0, 0.0, 0.0, self._speed_limit
         self._waiting: deque[float] = deque()
@@ -182,6 +182,7 @@ class LaneCentring:
                     break  # behind a crest
                 highest = slope
             there = max(self.aim / max(abs(line.curvature[i]), STRAIGHT), self.slowest**2)
+            there = min(there, self._lane_limits[i] ** 2)
             out.append(math.sqrt(there + 2 * self.braking * distance))
             distance += SPACING
         return out

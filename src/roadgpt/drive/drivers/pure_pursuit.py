@@ -46,7 +46,7 @@ class PurePursuit:
         line = line_along(road, world.profile_of(road).middle(stations(road)))
         lateral = min(self.risk, 0.95 * world.site.friction)
         limits = DrivingLimits(lateral, lateral, lateral, world.limits.speed_limit)
-        self._line, self._speed = line, plan_speed(line, limits, highest_speeds(road, line))
+        self._line, self._speed = line, plan_speed(line, limits, highest_speeds(road, world, line))
         self._signs, self._distance = StopSigns(road), KeepingDistance(line)
 
     def steer(self, view: View) -> Command:

@@ -60,7 +60,7 @@ class Reference:
         line = line_along(road, world.profile_of(road).middle(stations(road)))
         lateral = min(self.risk, FRICTION_USED * world.site.friction)
         limits = DrivingLimits(lateral, BRAKING * lateral, TRACTION * lateral, world.limits.speed_limit)
-        self._line, self._speed = line, plan_speed(line, limits, highest_speeds(road, line))
+        self._line, self._speed = line, plan_speed(line, limits, highest_speeds(road, world, line))
         self._signs, self._distance = StopSigns(road), KeepingDistance(line)
 
     def steer(self, view: View) -> Command:

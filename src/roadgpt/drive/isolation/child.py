@@ -98,8 +98,8 @@ class _DriverHost:
         if image is not None and not isinstance(image, str):
             self._picture = image
         picture = None if image is None else self._picture
-        ahead = self._outlook.at(place[STATION])
-        view = View._make((*place, self._road, self._world, *motion, picture, *ahead, others, lights))
+        ahead, signs = self._outlook.at(place[STATION]), self._outlook.signs(place[STATION])
+        view = View._make((*place, self._road, self._world, *motion, picture, *ahead, others, lights, signs))
         return {"command": self._guard.ask(view), "handed_to": self._guard.handed_to}
 
 

@@ -5,7 +5,7 @@ Source: ASAM OpenSCENARIO 1.2.0, user guide and XML schema. An entity's origin i
 on the ground. Angles are right-handed, so pitch is positive nose down (ISO 8855)."""
 
 import math
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -54,7 +54,8 @@ BODIES = {
     "lost_load": ("MiscObject", "obstacle", 20),
 }
 """Body, category and a typical mass in kg, riders included, of each kind of actor."""
-NEAR, LASTS = 0.02, 0.5  # m and s; who stays within this distance for this time rests
+NEAR, LASTS = 0.1, 0.1  # m and s; who stays within this distance for this time creeps or rests
+EVENLY = 0.01  # m, from where it would be if it moved evenly meanwhile
 REAR, FRONT = -0.3, 0.3  # usual places of axles as shares of a vehicle's length, from its middle
 
 
@@ -147,7 +148,7 @@ def replay(road: Road, world: World, poses: Poses, map_: str) -> XmlElement:
     root, actions, story = _frame(road, world, map_, told, others)
     _start(actions, _in_world(rows[0]), round(float(poses.speed[0]), DECIMALS))
     begin = _drives_off(ground)
-    maneuver = _act(story, "repeat")
+    maneuver = _act(story, "repeat", rule="greaterOrEqual" if others else "greaterThan")
     if others:
         _follow_in_parts(maneuver, "repeat", time, rows)
     else:
@@ -235,25 +236,34 @@ def _reference(states: Array, ahead: float) -> Array:
 
 
 def _follow_in_parts(maneuver: XmlElement, name: str, time: Array, rows: Array) -> None:
-    """Adds events in which an entity follows a trajectory through poses, and others in which it stands: a
-    player may move poses of standing that are in the middle of a trajectory, as esmini does."""
-    resting = _rests(time, rows[:, :3])
-    places = sorted({0, *(place for each in resting for place in each), len(time) - 1})
+    """Adds events in which an entity follows a trajectory through poses, and others in which it creeps or
+    stands, with two poses each: a player may move or leave out poses that are close together in a trajectory
+    of more, as esmini does within 0.1 m."""
+    slow = _slow_parts(time, rows[:, :3])
+    places = sorted({0, *(place for each in slow for place in each), len(time) - 1})
     for number, (first, last) in enumerate(pairwise(places)):
-        kept = [first, last] if (first, last) in resting else range(first, last + 1)
+        kept = [first, last] if (first, last) in slow else range(first, last + 1)
         _follow(
             maneuver, name if number == 0 else f"{name}, {number + 1}", time[kept], rows[kept], "parallel"
         )
 
 
-def _rests(time: Array, places: Array) -> list[tuple[int, int]]:
+def _slow_parts(time: Array, places: Array) -> list[tuple[int, int]]:
     """Returns the first and the last number of the poses of each time of at least LASTS in which an entity
-    stays within NEAR."""
+    stays within NEAR and moves evenly, within EVENLY."""
+
+    def is_uneven(last: int) -> bool:
+        share = (time[first : last + 1] - time[first]) / (time[last] - time[first])
+        evenly = places[first] + share[:, None] * (places[last] - places[first])
+        return bool((np.linalg.norm(places[first : last + 1] - evenly, axis=1) > EVENLY).any())
+
     found, first = [], 0
     while first < len(time) - 1:
         is_far = np.linalg.norm(places[first:] - places[first], axis=1) > NEAR
         last = first + int(np.argmax(is_far) if is_far.any() else len(is_far)) - 1
-        if time[last] - time[first] >= LASTS:
+        if time[last] - time[first] > LASTS - 1e-6:
+            last = first + bisect_left(range(first + 1, last + 1), True, key=is_uneven)
+        if time[last] - time[first] > LASTS - 1e-6:
             found.append((first, last))
         first = last if found and found[-1] == (first, last) else first + 1
     return found
@@ -270,7 +280,7 @@ def _repeat(root: XmlElement, story: XmlElement, other: Moved) -> None:
         _start(actions, _in_world(rows[0]), round(other.speed, DECIMALS))
     if is_first and other.stays and not moves:
         return
-    maneuver = _act(story, other.name, other.name)
+    maneuver = _act(story, other.name, other.name, "greaterOrEqual")
     if not is_first:
         added = _event(maneuver, f"{other.name} comes", float(time[0]), "parallel").add("GlobalAction")
         entity = added.add("EntityAction", {"entityRef": other.name})
@@ -368,13 +378,13 @@ def _body(other: Moved) -> XmlElement:
     return out
 
 
-def _act(story: XmlElement, name: str, who: str = EGO) -> XmlElement:
-    """Adds an act, and returns its maneuver."""
+def _act(story: XmlElement, name: str, who: str = EGO, rule: str = "greaterThan") -> XmlElement:
+    """Adds an act that begins at once, and returns its maneuver."""
     act = story.add("Act", {"name": f"{name} act"})
     group = act.add("ManeuverGroup", {"name": f"{name} group", "maximumExecutionCount": 1})
     group.add("Actors", {"selectTriggeringEntities": "false"}).add("EntityRef", {"entityRef": who})
     maneuver = group.add("Maneuver", {"name": f"{name} maneuver"})
-    act.extended(_trigger("StartTrigger", {f"{name} begin": _after(0.0)}))
+    act.extended(_trigger("StartTrigger", {f"{name} begin": _after(0.0, rule)}))
     return maneuver
 
 

@@ -50,6 +50,7 @@ from roadgpt.scene.shade import AIR, ASPHALT, DRIER, LUSH, PAINTED, STONES, pano
 from roadgpt.scene.trees import SIDE, Trees, pictures
 from roadgpt.scene.weather import Weather
 from roadgpt.traffic.actor import STEP
+from roadgpt.verdict.measures import measure
 from roadgpt.verdict.verdict import MOSTLY, PARTLY
 
 __all__ = ["page", "page_of", "scene", "write"]
@@ -145,8 +146,11 @@ DRIVE = {
     "outside": 4,
 }
 """Columns of a drive that the page uses, and their decimals."""
-OF_OTHERS = {"x": CENTIMETRES, "y": CENTIMETRES, "z": CENTIMETRES, "heading": 3, "speed": 1}
+OF_OTHERS = {"x": CENTIMETRES, "y": CENTIMETRES, "z": CENTIMETRES, "heading": 3, "speed": 2}
 """Columns of the states of others, and their decimals."""
+LONGEST, CRITICAL = 20.0, 1.5
+"""The longest time to collision in seconds that the page is told; and below which time it is usually called
+critical (van der Horst 1990)."""
 WORLD = ("map_size", "friction", "speed_limit", "oob_tolerance", "z_floor")
 SCALE = {"partly": PARTLY, "mostly": MOSTLY, "colours": [*SEVERE.values()][1:], "failed": VERMILLION}
 """The colours that show how far the car is outside its lane, and the shares of the car outside from which the
@@ -251,12 +255,43 @@ def _others(run: Run) -> dict[str, Any]:
         columns = zip(OF_OTHERS.items(), states.T, strict=True)
         actors.append({
             **actor.size._asdict(),
+            "name": actor.name,
             "kind": actor.kind,
             "colour": OF_KINDS[actor.kind][1],
             "first": int(there[0]),
             **{name: rounded(column, digits) for (name, digits), column in columns},
         })  # fmt: skip
-    return {"others": {"step": STEP, "actors": actors}}
+    return {"others": {"step": STEP, "actors": actors, **_closest(run)}} if actors else {}
+
+
+def _closest(run: Run) -> dict[str, Any]:
+    """Returns the smallest conflict time with anybody at each sample, and who it is; the smallest time to
+    collision; and where the tested car touched somebody."""
+    assert run.road is not None
+    assert run.drive is not None
+    assert run.drive.others is not None
+    measured = measure(run.world.lay(run.road), run.drive, run.world)
+    near = {name: getattr(measured, name).min(axis=1) for name in ("conflict", "ttc")}
+    height = np.interp(measured.time, run.drive["time"], run.drive["z"]) - run.drive.car.height
+    hits = [(each, each.contact) for each in (run.verdict and run.verdict.incidents) or () if each.contact]
+    return {
+        "near": {
+            **{
+                name: [round(float(each), CENTIMETRES) if each < LONGEST else None for each in times]
+                for name, times in near.items()
+            },
+            "who": measured.conflict.argmin(axis=1).tolist(),
+            "critical": CRITICAL,
+        },
+        "contacts": [
+            {
+                **dict(zip("xy", rounded(np.array(contact.xy), CENTIMETRES), strict=True)),
+                "z": round(float(np.interp(each.at_time, measured.time, height)), CENTIMETRES),
+                "time": round(each.at_time, MILLIMETRES),
+            }
+            for each, contact in hits
+        ],
+    }
 
 
 def _weather_text(scene: Scene) -> str:

@@ -5,6 +5,7 @@ The density is 5, 12 or 25 vehicles for each km and lane (light, medium, dense).
 and held by vehicles that come in where the map's lanes begin; who finds no room waits outside."""
 
 import math
+from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -89,6 +90,7 @@ class IdmMover:
         if flow is None and scene.oncoming is not None:
             for n in _against(network, self.ids, self._path[1]):
                 self._density[n] = DENSITY.get(scene.oncoming, 0.0)
+        self._begin_density = self._density[list(self._waits)]
         self._wanted = float((self._density * self.lanes.length).sum())
         self._tick = 0
         self._goes_on = np.diff(self.lanes.onward_of) > 0
@@ -148,11 +150,10 @@ class IdmMover:
             whole[f.STATE] = f.ABSENT
             return
         self._states[f.TESTED] = car.x, car.y, 0.0, car.heading, car.speed
-        row[[f.V, f.LENGTH, f.WIDTH, f.PULL, f.FACTOR]] = car.speed, car.length, car.width, 1.5, 1.0
+        row[: f.PULL + 1] = 0.0, car.speed, car.length, car.width, 1.0, 0.0, 0.0, 1.5
         row[f.PROGRESS] = 1.0
         starts, lanes = self._path
-        k = int(np.searchsorted(starts, car.s, side="right")) - 1
-        k = min(max(k, 0), len(lanes) - 1)
+        k = min(max(bisect_right(starts, car.s) - 1, 0), len(lanes) - 1)
         if whole[f.STATE] == f.ABSENT:
             self._ways[f.TESTED, : len(lanes)] = lanes
             whole[:] = 0, len(lanes), -1, -1, f.DRIVES, 0
@@ -220,8 +221,9 @@ class IdmMover:
         speeds = self._numbers[self._rows, f.V]
         pace = float(speeds.mean()) if len(speeds) else float(self.lanes.limit.mean())
         rate = pace * min(max(2.0 - len(speeds) / max(self._wanted, 1.0), 0.0), 2.0)
-        for lane in self._waits:
-            self._waits[lane] += int(self._rng.random() < rate * self._density[lane] * STEP)
+        come = self._rng.random(len(self._waits)) < rate * self._begin_density * STEP
+        for lane, comes in zip(self._waits, come.tolist(), strict=True):
+            self._waits[lane] += comes
             if not self._waits[lane]:
                 continue
             gap = self._room[lane] - 5.0 - f.JAM
@@ -257,7 +259,6 @@ class IdmMover:
             self._present = int(self._rows.max(initial=0)) + 1
 
     def _shown(self) -> FloatArray:
-        f.positions(self.lanes, self._numbers, self._whole, self._ways, self._present, self._states)
         out = np.full((len(self.actors), 5), math.nan)
         out[self._who] = self._states[self._rows]
         return out

@@ -89,12 +89,15 @@ class MujocoSimulator:
                 break
             now = vehicle.row.tolist()
             *place, steer, vx, vy = _SEEN(now)
-            image = None if sensor is None else sensor.see(vehicle.see())
+            image = None
+            if sensor is not None:
+                bodies = () if company is None else company.bodies(step * CONTROL)
+                image = sensor.see(vehicle.see(), bodies)
             ahead = outlook.at(now[station])
             if company is not None:
                 lights = company.lights(now[station], step * CONTROL)
             here = (step * CONTROL, *place, road, world, steer, CONTROL, vx, vy, image)
-            view = View._make((*here, *ahead, seen, lights))
+            view = View._make((*here, *ahead, seen, lights, outlook.signs(now[station])))
             steer, throttle, brake = guard.ask(view)
             if monitor.touched is not None:
                 throttle, brake = 0.0, 1.0  # whatever the driver says
@@ -107,4 +110,6 @@ class MujocoSimulator:
         table = np.frombuffer(b"".join(rows)).reshape(len(rows), -1)
         columns = Columns({name: table[:, place] for place, name in enumerate(_NAMES)})
         others = None if traffic is None else traffic.tracks()
-        return Drive(guard.name, "mujoco", seed, columns, ended, self.car.box, tuple(guard.handovers), others)
+        has_lights = company is not None and company.has_lights
+        handovers = tuple(guard.handovers)
+        return Drive(guard.name, "mujoco", seed, columns, ended, self.car.box, handovers, others, has_lights)

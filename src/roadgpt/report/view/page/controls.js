@@ -13,6 +13,16 @@ function wireBar(player) {
     tick.style.background = colour;
     slider.parentElement.append(tick);
   }
+  for (const time of player.contacts.slice(0, 1)) {
+    const name = document.createElement("b");
+    name.textContent = "contact";
+    name.style.left = `calc(${THUMB / 2}px + ${time / player.duration} * (100% - ${THUMB}px))`;
+    slider.parentElement.append(name);
+    const button = document.createElement("button");
+    Object.assign(button, { type: "button", className: "contact", title: "To the moment of contact (C)", textContent: "Contact" });
+    button.addEventListener("click", () => player.toContact());
+    document.querySelector(".bar .name").before(button);
+  }
   slider.addEventListener("input", () => player.moveTo(Number(slider.value)));
   byId("play").addEventListener("click", () => player.toggle());
   rate.addEventListener("change", () => player.setRate(Number(rate.value)));
@@ -48,6 +58,7 @@ function wireKeys(player) {
     3: () => player.choose("free"),
     f: () => player.toCar(),
     n: () => player.toMark(),
+    c: () => player.toContact(),
     l: () => player.toggleLine(),
     "?": () => { keys.open = !keys.open; },
     Escape: () => { keys.open = false; },

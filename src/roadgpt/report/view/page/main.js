@@ -3,7 +3,7 @@
 const CAMERAS = ["behind", "bonnet", "free"];
 const scenes = JSON.parse(document.getElementById("data").textContent);
 const fastest = Math.max(10 / 3.6, ...scenes.map((scene) => (scene.drive ? extent(scene.drive.columns.speed)[1] : 0)));
-document.getElementById("panels").className = scenes.length > 1 ? "two" : "one";
+document.getElementById("panels").className = (scenes.length > 1 ? "two" : "one") + (scenes.some(isAmong) ? " among" : "");
 
 const player = {
   time: 0,
@@ -50,6 +50,9 @@ const player = {
     const times = player.marks.map(({ time }) => time);
     if (times.length) player.moveTo(times.find((time) => time > player.time + 0.01) ?? times[0]);
   },
+  toContact() {
+    if (player.contacts.length) player.moveTo(player.contacts.find((time) => time > player.time + 0.01) ?? player.contacts[0]);
+  },
   toggleLine() {
     player.isLineShown = !player.isLineShown;
     stale();
@@ -65,6 +68,8 @@ await Promise.all(Object.values(PICTURES).map((picture) => picture.decode()));
 const panels = scenes.map((scene) => makePanel(scene, fastest, player));
 player.duration = Math.max(...panels.map(({ trip }) => trip.duration));
 player.marks = scenes.flatMap(({ places }) => places).filter(({ time, text }) => text && time !== null).sort((a, b) => a.time - b.time);
+player.contacts = scenes.flatMap(({ others }) => (others ? others.contacts : [])).map(({ time }) => time).sort((a, b) => a - b);
+document.body.classList.toggle("has-contact", player.contacts.length > 0);
 ["partly", "mostly", "failed"].forEach((name, n) => document.body.style.setProperty(`--${name}`, [...scenes[0].severe.colours, scenes[0].severe.failed][n]));
 document.body.classList.toggle("on-route", scenes.some(({ network }) => network && network.hasRoute));
 const showBar = wireBar(player);

@@ -17,6 +17,8 @@ function makePanel(scene, fastest, { moveTo, wentFree, hasLine }) {
     makeStrip(find(".height canvas"), scene, trip, heightOf(scene), moveTo),
     makeStrip(find(".second canvas"), scene, trip, trip.isDriven ? speedOf(scene, fastest) : bendOf(scene), moveTo),
   ];
+  if (isAmong(scene)) sheets.push(makeStrip(find(".near canvas"), scene, trip, closenessOf(scene, trip), moveTo));
+  else find(".near").remove();
 
   const panel = {
     trip, stage, cameras, section,
@@ -45,6 +47,8 @@ function makePanel(scene, fastest, { moveTo, wentFree, hasLine }) {
   };
   return panel;
 }
+
+const isAmong = ({ others }) => Boolean(others && others.actors.length);
 
 function stageIn(section, scene, trip, fastest) {
   const canvas = section.querySelector(".scene");

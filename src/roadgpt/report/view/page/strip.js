@@ -4,12 +4,14 @@ const LEFT = 34, RIGHT = 12, TOP = 26, BOTTOM = 20; // pixels around the graph
 const NAMED = 16; // pixels at the top of the graph for the names of junctions
 const NARROW = 200; // pixels, below which a value has no room beside its name for more than itself
 
-// what: s, values; least: span of the axis; floor: value it starts from; limit: a line with a name;
-// colour: of the line at index i; at: value under the car.
+// what: s, values, null where there is none; thin: values of a thin line; least: span of the axis; floor, ceiling:
+// where it begins and ends; limit: a line with a name; colour: of the line at index i; at: value under the car;
+// base: what the values stand over, if not the distance; marks: what is marked, if not the places of the scene.
 function makeStrip(canvas, scene, trip, what, moveTo) {
   const { road } = scene;
+  const base = what.base || { length: road.length, of: (pose) => clamp(pose.s, 0, road.length), timeAt: trip.timeAt };
   const view = { low: 0, high: 1, wide: 1, tall: 1 };
-  const px = (s) => LEFT + (s / road.length) * view.wide;
+  const px = (s) => LEFT + (s / base.length) * view.wide;
   const py = (value) => TOP + view.tall * (1 - (value - view.low) / (view.high - view.low));
 
   function aim({ wide, high }) {
@@ -20,7 +22,7 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
     const tall = Math.max(1, high - TOP - BOTTOM);
     const hasNames = what.names && scene.network && scene.network.stretches.length > 0 && tall > 2 * NAMED;
     const above = hasNames ? Math.max(air, ((top - low) * NAMED) / (tall - NAMED)) : air;
-    Object.assign(view, { low, high: top + above, wide: Math.max(1, wide - LEFT - RIGHT), tall });
+    Object.assign(view, { low, high: what.ceiling ?? top + above, wide: Math.max(1, wide - LEFT - RIGHT), tall });
   }
 
   function axes(pen, { high }) {
@@ -30,8 +32,8 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
       rule(pen, LEFT, py(value), LEFT + view.wide, py(value));
       said(pen, String(+value.toFixed(6)), LEFT - 5, py(value), "right", LOOK.soft);
     }
-    const along = tidyStep(road.length, Math.max(2, view.wide / 62));
-    for (let s = 0; s <= road.length * 1.0001; s += along) {
+    const along = tidyStep(base.length, Math.max(2, view.wide / 62));
+    for (let s = 0; s <= base.length * 1.0001; s += along) {
       rule(pen, px(s), TOP, px(s), TOP + view.tall);
       said(pen, String(+s.toFixed(6)), px(s), high - BOTTOM / 2 - 1, "center", LOOK.soft);
     }
@@ -82,8 +84,14 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
   function ground(pen, size) {
     aim(size);
     axes(pen, size);
-    stretches(pen);
-    outside(pen);
+    if (!what.base) {
+      stretches(pen);
+      outside(pen);
+    }
+    pen.save();
+    pen.beginPath();
+    pen.rect(LEFT - 3, TOP - 3, view.wide + 6, view.tall + 6);
+    pen.clip();
     pen.lineJoin = "round";
     if (what.fill) {
       pen.beginPath();
@@ -94,17 +102,19 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
       pen.fill();
     }
     // the case is seen by night only: the colours of low speeds are dark
-    for (const [width, colour] of [[4, () => LOOK.case], [2.2, what.colour]]) {
-      for (let i = 1; i < what.s.length; i++) {
+    for (const [width, colour, values] of [[1.2, () => LOOK.soft, what.thin || []], [4, () => LOOK.case, what.values], [2.2, what.colour, what.values]]) {
+      for (let i = 1; i < values.length; i++) {
+        if (values[i - 1] === null || values[i] === null) continue;
         pen.beginPath();
-        pen.moveTo(px(what.s[i - 1]), py(what.values[i - 1]));
-        pen.lineTo(px(what.s[i]), py(what.values[i]));
+        pen.moveTo(px(what.s[i - 1]), py(values[i - 1]));
+        pen.lineTo(px(what.s[i]), py(values[i]));
         pen.strokeStyle = colour(i);
         pen.lineWidth = width;
         pen.lineCap = "round";
         pen.stroke();
       }
     }
+    pen.restore();
     if (what.limit) {
       pen.setLineDash([5, 4]);
       pen.strokeStyle = LOOK.soft;
@@ -117,11 +127,12 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
       said(pen, what.limit.name, LEFT + view.wide - 2, py(what.limit.value) + 12, "right", LOOK.soft);
     }
     const level = what.names ? TOP + view.tall - 6 : TOP + 5; // names of junctions are at the top
-    for (const place of scene.places) cross(pen, px(clamp(place.s, 0, road.length)), level, place.isMinor ? 2.8 : 4, place.colour);
+    for (const place of what.marks || scene.places) cross(pen, px(clamp(place.s, 0, base.length)), level, place.isMinor ? 2.8 : 4, place.colour);
+    for (const time of what.contacts || []) star(pen, px(time), TOP + view.tall - 8, 7);
   }
 
   function over(pen, size, pose) {
-    const s = clamp(pose.s, 0, road.length);
+    const s = base.of(pose);
     const value = what.at(pose);
     pen.strokeStyle = LOOK.here;
     pen.lineWidth = 1.5;
@@ -129,18 +140,20 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
     pen.moveTo(px(s), TOP);
     pen.lineTo(px(s), TOP + view.tall);
     pen.stroke();
-    pen.beginPath();
-    pen.arc(px(s), py(value), 5, 0, 7);
-    pen.fillStyle = LOOK.here;
-    pen.fill();
-    pen.strokeStyle = "#fff";
-    pen.lineWidth = 1.5;
-    pen.stroke();
+    if (value !== null) {
+      pen.beginPath();
+      pen.arc(px(s), py(Math.min(value, view.high)), 5, 0, 7);
+      pen.fillStyle = LOOK.here;
+      pen.fill();
+      pen.strokeStyle = "#fff";
+      pen.lineWidth = 1.5;
+      pen.stroke();
+    }
     const text = what.tell(pose);
     said(pen, size.wide < NARROW ? text.split(",")[0] : text, size.wide - RIGHT + 2, 12, "right", LOOK.ink);
   }
 
-  takesHold(canvas, (u) => moveTo(trip.timeAt(clamp(((u - LEFT) / view.wide) * road.length, 0, road.length))));
+  takesHold(canvas, (u) => moveTo(base.timeAt(clamp(((u - LEFT) / view.wide) * base.length, 0, base.length))));
   return makeSheet(canvas, ground, over);
 }
 

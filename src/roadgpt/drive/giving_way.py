@@ -1,0 +1,163 @@
+"""Where a driver on a route waits for others: before junctions for those who have priority, and before
+crosswalks for persons who are on them or about to step onto them.
+
+A driver enters a junction as the traffic around it does (``roadgpt.traffic.following``): when nobody to whom
+it gives way (``roadgpt.network.lanes``) is where the ways meet, or would come there within MARGIN seconds of
+the car's leaving that place. Who stands does not keep it for longer than TURN seconds; after PATIENCE seconds
+it goes before those who can still stop without effort. At crosswalks: Vienna Convention on Road Traffic
+(1968), article 21."""
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from roadgpt.brief.scene import VEHICLES
+from roadgpt.compiled import compiled
+from roadgpt.drive.driving_line import FRONT, DrivingLine, FloatArray, turning_speed
+from roadgpt.drive.view import Other, View
+from roadgpt.network import legs_of, network_of
+from roadgpt.network.lanes import Lanes, lanes_of
+from roadgpt.network.markings import CROSSWALK
+from roadgpt.network.network import Leg
+from roadgpt.traffic.following import (
+    AGAINST_MUST,
+    EASY,
+    HORIZON,
+    MARGIN,
+    PATIENCE,
+    STANDING,
+    TURN,
+    time_over,
+)  # fmt: skip
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road, World
+
+PULL = 1.5  # m/s^2, with which the car is expected to drive on, as the cars of the traffic
+SLOWEST = 3.0  # m/s, with which somebody is expected to come at least
+LENGTH = 4.7  # m, of RoadGPT's saloon
+SPACING = 2.0  # m between points of the ways of others
+ASIDE, SAME = 1.5, 0.7  # m from a way, cosine of the angle to it, within which somebody drives along it
+SOON, NEAR = 1.0, 0.7  # s, m: a person so far from the lanes or from the crosswalk counts
+STRIP = 1.2  # m: a person so far to the side of the car's middle who walks on does not count
+STROLLS = 0.1  # m/s
+
+
+class GivingWay:
+    """The junctions and crosswalks of one route, and which of them the driver waits before."""
+
+    def __init__(self, road: "Road", world: "World", line: DrivingLine) -> None:
+        network, legs = network_of(road, world), legs_of(road, world)
+        lanes = lanes_of(network)
+        crossed = {arm.end: arm.crosswalk for junction in network.junctions for arm in junction.arms}
+        self._junctions: list[tuple[float, float, FloatArray]] = []
+        """For each junction where the car gives way the station of the line, the speed in m/s at which people
+        drive through, and the ``_ways`` of others."""
+        for before, leg, start, end in zip(legs, legs[1:], road.starts[1:], road.starts[2:], strict=False):
+            if network.road(leg.road).junction is None or not (keys := lanes.gives_way_to(leg)):
+                continue
+            stop, first, last = lanes[before].stop, line.place(start)[0], line.place(end)[0] + 1
+            bend = max(map(abs, line.curvature[first : last + 1]))
+            ahead = 0.0 if stop is None else lanes[before].length - stop
+            rows = [row for key in keys for row in _ways(lanes, leg, key, start, end)]
+            top = min(turning_speed(bend), world.limits.speed_limit)
+            self._junctions.append((start - ahead, top, np.array(rows)))
+        near, far = CROSSWALK[0], sum(CROSSWALK)
+        begins = [way.start - far for way in road.passages if crossed[way.arrival]]
+        begins += [way.end + near for way in road.passages if crossed[way.departure]]
+        profile, self._crosswalks = world.profile_of(road), list[tuple[float, FloatArray]]()
+        for begin in sorted(begins):
+            s = begin + CROSSWALK[1] / 2
+            edges, own = profile.edges(s), line.offset[line.place(s)[0]]
+            place = (*road.at(s)[:2], road.heading(s), edges.left, edges.right, own)
+            self._crosswalks.append((begin, np.array(place, float)))
+        self._waited, self._goes = 0.0, False
+
+    def lines(self, view: View) -> list[float]:
+        """Returns the distances in metres, along the route, to the lines before which the car has to wait."""
+        front, far = view.s + FRONT, view.speed**2 / (2 * EASY) + view.speed + 5.0
+        while self._junctions and self._junctions[0][0] <= front:
+            del self._junctions[0]
+            self._waited, self._goes = 0.0, False
+        while self._crosswalks and self._crosswalks[0][0] <= front:
+            del self._crosswalks[0]
+        must = view.speed**2 / (2 * AGAINST_MUST) + front  # the station before which the car cannot stop
+        found = []
+        if self._junctions and must < (line := self._junctions[0][0]) < front + far:
+            self._waited += view.dt if view.speed < STANDING and line < front + 5.0 else 0.0
+            _, top, ways = self._junctions[0]
+            rows = [each[1:6] for each in view.others if each.kind in VEHICLES]
+            margin = 0.0 if self._goes else MARGIN
+            car = np.array([front - LENGTH, view.speed, top, self._waited, margin])
+            self._goes = not rows or not _is_awaited(ways, np.array(rows), car)
+            found += [] if self._goes else [line - view.s]
+        if self._crosswalks and must < (line := self._crosswalks[0][0]) < front + far:
+            persons = [each for each in view.others if each.kind in ("adult", "child")]
+            if any(_is_crossing(self._crosswalks[0][1], each) for each in persons):
+                found.append(line - view.s)
+        return found
+
+
+def _ways(lanes: Lanes, leg: Leg, key: Leg, start: float, end: float) -> Iterator[tuple[float, ...]]:
+    """Yields points of the ways that lead into a lane to which a leg of a route gives way: x, y, heading,
+    metres from there to where the two ways meet and to the end of that place, and the station of the route
+    at its end. The leg leads from station ``start`` to ``end``."""
+    place = lanes.meeting(leg, key)
+    assert place is not None
+    last = start + place.own[1] / lanes[leg].length * (end - start)
+    first, until = place.others
+    open_ = [(key, first)]
+    while open_:
+        here, ahead = open_.pop()
+        lane = lanes[here]
+        s = np.arange(lane.length, 0.0, -SPACING)
+        for (x, y, _), heading, left in zip(lane.at(s), lane.heading(s), ahead - s, strict=True):
+            yield x, y, heading, left, left + until - first, last
+        if ahead < HORIZON:
+            round_ = lanes[key].member.junction  # one comes around a ring to where one began
+            before = [each for each in lane.predecessors if lanes[each].member.junction != round_]
+            open_ += [(each, ahead + lanes[each].length) for each in before]
+
+
+@compiled
+def _is_awaited(ways: FloatArray, others: FloatArray, car: FloatArray) -> bool:
+    """Returns whether the car has to wait for one of the others: x, y, heading, speed and length of each.
+    ``car`` has the station of its rear, its speed, its speed in the junction, for how long it has waited, and
+    the seconds that it keeps free."""
+    rear, v, top, waited, margin = car
+    for other in others:
+        speed, half = other[3], other[4] / 2.0
+        for way in ways:
+            c, s = math.cos(way[2]), math.sin(way[2])
+            dx, dy = other[0] - way[0], other[1] - way[1]
+            ahead = dx * c + dy * s
+            if abs(ahead) > SPACING / 2.0 or abs(dy * c - dx * s) > ASIDE:
+                continue
+            left = way[3] - ahead - half
+            if math.cos(other[2] - way[2]) < SAME or way[4] - ahead + half < 0.0:
+                continue
+            if left > 0.0:
+                is_far = left > speed * speed / (2.0 * EASY) + speed + 15.0
+                if (speed < STANDING and waited > TURN) or (waited > PATIENCE and is_far):
+                    continue
+                leaves = time_over(v, max(way[5] - rear, 0.0), top, PULL)
+                if left / max(speed, SLOWEST) > leaves + margin:
+                    continue
+            return True
+    return False
+
+
+def _is_crossing(crosswalk: FloatArray, person: Other) -> bool:
+    """Returns whether a person is on a crosswalk or about to step onto it, and not beyond the car's path. A
+    crosswalk is x, y and heading of its middle, and in metres to the left of it the edges of the lanes and
+    the middle of the path."""
+    x, y, heading, left, right, own = crosswalk.tolist()
+    c, s = math.cos(heading), math.sin(heading)
+    dx, dy = person.x - x, person.y - y
+    along, t = dx * c + dy * s, dy * c - dx * s
+    across = person.speed * math.sin(person.heading - heading)
+    is_near = abs(along) < CROSSWALK[1] / 2 + NEAR and right - NEAR < t + SOON * across < left + NEAR
+    is_beyond = (t - own) * across > 0.0 and abs(t - own) > STRIP
+    return is_near and abs(across) > STROLLS and not is_beyond

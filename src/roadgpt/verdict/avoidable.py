@@ -1,0 +1,244 @@
+"""Finds whether a careful driver could have avoided a collision of the tested car.
+
+Each of the four drivers of ``verdict.careful`` takes the place of the tested car, on its way up to the
+contact and further along its lane, from when the other is visible on; it can brake, but not steer. The other
+moves as recorded; from the end of the recording, or from a contact that makes it brake, it goes on evenly.
+
+- A vehicle that goes along the way is followed or cuts in, as in UN Regulation No. 157. It is perceived
+  EVALUATED after its middle has come WANDERS out of the middle of its lane towards the car, or once it is in
+  the strip that the car's box needs; a hard braking, of SUDDEN, EVALUATED after its begin.
+- For everybody else the definition is ours: danger begins when the path that it takes with its present
+  velocity leads into the car's strip before the car has passed.
+
+``docs/explanation/traffic.md`` has all definitions.
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.brief.scene import VEHICLES
+from roadgpt.brief.visibility import visual_range, weather_drawn
+from roadgpt.drive.company import EYE, SPACING, in_sight
+from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y
+from roadgpt.traffic.following import AFTER_CONTACT
+from roadgpt.verdict.among_others import limits_along
+from roadgpt.verdict.careful import CAREFUL, DRIVERS, Driver, Moment, drive_on, stopping_distance
+from roadgpt.verdict.contact import CORNER, middles, separation
+from roadgpt.verdict.measures import ACROSS, ALONG, Line, driven_lane
+from roadgpt.verdict.verdict import PARTLY, Incident, percent
+
+if TYPE_CHECKING:
+    from roadgpt.drive import Drive
+    from roadgpt.road import Road, World
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+FINE = 0.01  # s, from one step of a driver to the next
+WINDOW, AFTER = 10.0, 10.0  # s before and after the contact: from 130 km/h the four stop within 7 s
+BEHIND, OBJECT = 2.0, 0.6  # m: the eye behind the car's front; the height of an object
+AHEAD = 300.0  # m of lane after the contact
+WANDERS, EVALUATED, SUDDEN = 0.375, 0.4, 5.0  # m, s, m/s^2
+TOWARDS = 0.05  # m/s sideways; tracks are rounded to a millimetre
+KEPT = 2.0  # s
+FRONTS = np.array(
+    [[2.0, 2.0, 2.4, 3.33, 5.56, 8.33, 11.11, 13.89, 16.67], [1, 1, 1, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6]]
+)
+"""R157, 5.2.3.3: speeds in m/s and the least time gaps in s; the least distance is 2 m."""
+
+
+def avoidance_of(
+    road: "Road", drive: "Drive", world: "World", collision: Incident
+) -> tuple[bool, tuple[str, ...], str]:
+    """Returns whether the tested car's first collision could have been avoided, which of the four drivers
+    avoid it, and how in words."""
+    meeting = _Meeting(road, drive, world, collision)
+    courses = {driver: _course(driver, meeting) for driver in DRIVERS}
+    by = tuple(driver.said for driver, (hits, _) in courses.items() if not hits)
+    if CAREFUL.said in by:
+        said = f"a careful driver (UN R157) brakes in time{courses[CAREFUL][1]}"
+    elif by:
+        names = " and ".join(filter(None, [", ".join(by[:-1]), by[-1]]))
+        said = f"{names} would have braked in time, a careful driver (UN R157) not"
+    else:
+        said = "no reference driver (careful driver, Reg157, FSM, RSS) could have avoided it"
+    if own := meeting.own_doing():
+        return True, by, f"avoidable: it {own}" + f"; {said}" * bool(by)
+    return bool(by), by, said
+
+
+def _course(driver: Driver, meeting: "_Meeting") -> tuple[bool, str]:
+    """Returns whether a driver collides, and how close it comes to the other in words."""
+    places, speeds = drive_on(driver, meeting.seen, meeting.free, FINE, meeting.first)
+    ahead = meeting.along - places
+    away = np.stack([ahead, meeting.t], axis=-1)
+    apart = separation(away, np.zeros(len(ahead)), meeting.heading, meeting.half, meeting.halves).max(axis=-1)
+    gap = (ahead - meeting.stretch - meeting.half[0])[(meeting.clearance < 0) & (ahead > 0)]
+    said = f" and stops {gap.min():.1f} m short" if len(gap) and not speeds[-1] else ""
+    return bool((apart < CORNER).any()), said
+
+
+class _Meeting:
+    """The other as the four drivers see it from the tested car's way, from when it is visible on, every FINE
+    seconds."""
+
+    def __init__(self, road: "Road", drive: "Drive", world: "World", collision: Incident) -> None:
+        assert drive.others is not None
+        self.drive, self.at_time = drive, collision.at_time
+        number = [each.name for each in drive.others.actors].index(str(collision.other))
+        actor, states = drive.others.actors[number], drive.others.states[:, number]
+        hit = min(int(self.at_time / STEP + 1e-9), len(states) - 1)
+        hit -= int(np.isnan(states[hit, X]))  # it left at the step itself
+        gone = np.flatnonzero(np.isnan(states[:, X]))
+        begin = max([0, int((self.at_time - WINDOW) / STEP), *(gone[gone < hit] + 1)])
+        end = min([len(states), *gone[gone > hit]])
+        if _is_stopped(states[hit:end, SPEED]):
+            end = hit + 1
+        way, self.when, self.run, aside = _way(drive, driven_lane(road, world), STEP * begin, self.at_time)
+        other, (length, width, _) = states[begin:end], actor.size
+        size = np.broadcast_to([length / 2, width / 2], (len(other), 2))
+        boxes = way.boxes(other[:, X], other[:, Y], other[:, HEADING], size, other[:, SPEED])
+        time, self.way = STEP * np.arange(begin, hit + 1), way
+        scene = weather_drawn(world.scene, drive.seed)
+        reach = visual_range(scene, actor.kind)
+        seen = np.array([self._is_seen(number, each, reach) for each in time])
+        start = int(np.argmax(seen)) if seen.any() else hit - begin
+        early, since = float(time[max(start - 1, 0)]), float(time[start])
+        while since - early > FINE / 10:
+            middle = (early + since) / 2
+            early, since = (early, middle) if self._is_seen(number, middle, reach) else (middle, since)
+        seen[max(start - 1, 0)] = True
+
+        # From the last sample on, the other goes on evenly.
+        more = np.arange(1, 2 + int(AFTER / STEP) + hit + 1 - begin)
+        along, t = (
+            np.concatenate([row, row[-1] + more * (row[-1] - row[-2] if len(row) > 1 else 0.0)])
+            for row in (boxes.along, boxes.t)
+        )
+        stretch, side, heading = (
+            np.pad(row, (0, len(more)), "edge") for row in (*boxes.reach, boxes.heading)
+        )
+        pace, drift = (np.append(np.diff(row), 0.0) / STEP for row in (along, t))
+        towards, clearance = -np.sign(t) * drift, np.abs(t) - side - drive.car.width / 2
+        follows = (np.abs(np.sin(heading)) < ACROSS) & (np.cos(heading) > 0) & (pace > STILL)
+        follows &= actor.kind in VEHICLES
+        wide = float(world.profile_of(road).width(collision.at_s))
+        home = wide * round((t[start] + aside) / wide) - aside  # the middle of its lane
+        wanders = ((home - t) * np.sign(home) >= WANDERS) & (towards > TOWARDS)
+        wanders[:start] = False
+        steps = round(EVALUATED / STEP)
+        is_coming = np.arange(len(t)) >= (np.argmax(wanders) + steps if wanders.any() else np.inf)
+        hard = np.append(0.0, np.diff(pace)) < -SUDDEN * STEP
+        sudden = follows & (clearance < 0) & (np.convolve(hard, np.ones(steps))[: len(t)] > steps - 0.5)
+        visible = np.concatenate([seen, np.ones(len(t) - len(seen), bool)])
+
+        at = np.arange(since, self.at_time + AFTER, FINE)
+        sample = ((at - time[0]) / STEP + 1e-6).astype(int)
+        whole = time[0] + STEP * np.arange(len(t))
+        self.along, self.t, self.heading, self.stretch, self.clearance = (
+            np.interp(at, whole, row) for row in (along, t, heading, stretch, clearance)
+        )
+        self.half, self.halves = np.array([drive.car.length, drive.car.width]) / 2, size[0]
+        flags = (pace, towards, follows, visible, (clearance < 0) | is_coming, sudden)
+        rows = (self.along, self.stretch, self.clearance, *(row[sample] for row in flags))
+        self._rows = [*zip(*(row.tolist() for row in rows), strict=True)]
+        self._length = drive.car.length + length
+
+        then = np.minimum(at, self.at_time)
+        speeds = np.arange(0.0, 80.0, 0.1)
+        ways = [stopping_distance(speed) for speed in speeds]
+        sight = _sight(way, self._eye(since), visual_range(scene, "lane")) - BEHIND
+        self.recorded = np.interp(then, drive["time"], np.abs(drive["speed"]))
+        limit = np.interp(then, drive["time"], limits_along(road, drive, world))
+        self.free = np.minimum(self.recorded, np.minimum(limit, np.interp(sight, ways, speeds))).tolist()
+        self.places = np.interp(then, self.when, self.run)
+        self.first = float(self.places[0])
+        self._samples = range(0, max(int((self.at_time - since) / FINE), 1), round(STEP / FINE))
+
+    def _eye(self, time: float) -> float:
+        """The station of the driver's eye along the way."""
+        return float(np.interp(time, self.when, self.run)) + self.drive.car.length / 2 - BEHIND
+
+    def _is_seen(self, number: int, time: float, reach: float) -> bool:
+        """Whether there is a free line of sight to one of the others; ``reach`` is the visual range."""
+        assert self.drive.others is not None
+        actors, states = self.drive.others.actors, self.drive.others.at(time)
+        order = np.flatnonzero(~np.isnan(states[:, X]))
+        sizes, count = np.array([each.size for each in actors]), len(order)
+        eye = self.way.at(np.array(self._eye(time))) + [0.0, 0.0, EYE]
+        ground = np.column_stack([self.way.middle, self.way.z])[:: round(SPACING / ALONG)]
+        found = in_sight(
+            states, sizes, eye, ground, order, np.empty((count, 4)), count, reach + sizes[number, 0] / 2
+        )
+        return number in order[:found]
+
+    def seen(self, at: int, place: float, speed: float, gained: float) -> Moment:
+        """Returns what a driver sees at a step, given its place, speed and acceleration."""
+        along, stretch, clearance, pace, towards, follows, visible, perceived, sudden = self._rows[at]
+        if not visible:
+            return Moment(np.inf, np.inf, self._length, speed, gained, pace, 0.0, is_perceived=False)
+        gap, meets = along - stretch - place - self.half[0], False
+        if not follows and (clearance < 0 or towards > 0):
+            enters = max(clearance, 0.0) / towards if clearance > 0 else 0.0
+            meets = along + stretch + pace * enters > place + speed * enters - self.half[0]
+        return Moment(
+            gap, clearance, self._length, speed, gained, pace, towards, perceived and follows, sudden, meets
+        )
+
+    def own_doing(self) -> str:
+        """Returns how the tested car brought the collision about, in words; empty if it did not."""
+        outside = float(np.interp(self.at_time, self.drive["time"], self.drive["outside"]))
+        if outside > PARTLY:
+            return f"was outside its lane with {percent(outside)} of it"
+        kept = 0
+        for at in self._samples:
+            moment = self.seen(at, self.places[at], self.recorded[at], 0.0)
+            if CAREFUL.braking(moment):
+                break
+            least = max(moment.speed * np.interp(moment.speed, *FRONTS), 2.0)
+            closes = moment.speed > moment.its_speed - 0.1
+            is_near = self._rows[at][5] and moment.clearance < 0 and 0 < moment.gap < least and closes
+            kept = kept + 1 if is_near else 0
+            if kept * STEP >= KEPT:
+                return f"kept {moment.gap:.0f} m, not the {least:.0f} m of UN R157"
+        return ""
+
+
+def _is_stopped(speed: FloatArray) -> bool:
+    """Whether a contact made the other brake, as the mover idm does; ``speed`` is its from then on."""
+    change = np.diff(speed)[1:4]
+    return len(change) == 3 and bool((np.abs(change + AFTER_CONTACT * STEP) < 0.01).all())
+
+
+def _way(
+    drive: "Drive", lane: Line, begin: float, contact: float
+) -> tuple[Line, FloatArray, FloatArray, float]:
+    """Returns the way of the middle of the tested car's box up to the contact and along its lane, the times
+    and stations at which it was there, and how far it was to the left of its lane's middle at last."""
+    time, (x, y, heading) = drive["time"], middles(drive).T
+    when = np.append(time[(time >= begin) & (time < contact)], contact)
+    columns = (x, y, drive["z"] - drive.car.height, heading)
+    *track, heading = (np.interp(when, time, column) for column in columns)
+    points = np.stack(track, axis=-1)
+    run = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points[:, :2], axis=0).T))])
+    short = max(ALONG - run[-1], 0.0)  # a way of at least one stretch, if the car stood
+    behind = points[0] - short * np.array([np.cos(heading[0]), np.sin(heading[0]), 0.0])
+    run += short
+    grid = np.linspace(0.0, run[-1], int(run[-1] / ALONG) + 1)
+    driven = [np.interp(grid, np.append(0.0, run), row) for row in np.vstack([behind, points]).T]
+    zero = np.zeros((1, 2))
+    last = lane.boxes(points[-1:, 0], points[-1:, 1], heading[-1:], zero, zero[:, 0])
+    further = lane.at(last.along + np.arange(ALONG, AHEAD, ALONG), float(last.t[0]))
+    way = np.concatenate([np.stack(driven, axis=-1), further])
+    return Line(way, np.full(len(way), drive.car.width)), when, run, float(last.t[0])
+
+
+def _sight(way: Line, eye_at: float, reach: float) -> float:
+    """Returns how far an eye sees an object of OBJECT on its way in metres, in a visual range."""
+    ahead = way.run > eye_at
+    away, low = way.run[ahead] - eye_at, way.z[ahead] - way.at(np.array(eye_at))[2] - EYE
+    hides = np.append(-np.inf, np.maximum.accumulate(low / away)[:-1])
+    hidden = (low + OBJECT) / away < hides
+    return min(float(away[np.argmax(hidden)]) if hidden.any() else np.inf, reach)
