@@ -1,7 +1,7 @@
 """Drives many different routes among others, and counts collisions and whose fault they were.
 
-    python benchmarks/bench_at_fault.py 500                     reference, and the same driver with closed eyes
-    python benchmarks/bench_at_fault.py 100 --drivers lane_centring --flow light"""
+python benchmarks/bench_at_fault.py 500                     reference, and the same driver with closed eyes
+python benchmarks/bench_at_fault.py 100 --drivers lane_centring --flow light"""
 
 import argparse
 import sys
