@@ -1,6 +1,6 @@
 """Drives many different routes among others, and counts collisions and whose fault they were.
 
-python benchmarks/bench_at_fault.py 500                     reference, and the same driver with closed eyes
+python benchmarks/bench_at_fault.py 500                     reference, also with closed eyes
 python benchmarks/bench_at_fault.py 100 --drivers lane_centring --flow light"""
 
 import argparse
