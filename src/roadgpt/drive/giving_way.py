@@ -1,5 +1,6 @@
 """Where a driver on a route waits for others: before junctions for those who have priority, and before
-crosswalks for persons who are on them or about to step onto them.
+crosswalks for persons who are on them or about to step onto them. Where the route changes lanes, the driver
+comes in behind those who are ahead or beside it in the other lane.
 
 A driver enters a junction as the traffic around it does (``roadgpt.traffic.following``): when nobody to whom
 it gives way (``roadgpt.network.lanes``) is where the ways meet, or would come there within MARGIN seconds of
@@ -9,6 +10,7 @@ it goes before those who can still stop without effort. At crosswalks: Vienna Co
 
 import math
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,16 +27,19 @@ from roadgpt.traffic.following import (
     AGAINST_MUST,
     EASY,
     HORIZON,
+    JAM,
     MARGIN,
     PATIENCE,
     STANDING,
     TURN,
+    idm,
     time_over,
 )  # fmt: skip
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
+HEADWAY = 1.5  # s
 PULL = 1.5  # m/s^2, with which the car is expected to drive on, as the cars of the traffic
 SLOWEST = 3.0  # m/s, with which somebody is expected to come at least
 LENGTH = 4.7  # m, of RoadGPT's saloon
@@ -43,6 +48,7 @@ ASIDE, SAME = 1.5, 0.7  # m from a way, cosine of the angle to it, within which 
 SOON, NEAR = 1.0, 0.7  # s, m: a person so far from the lanes or from the crosswalk counts
 STRIP = 1.2  # m: a person so far to the side of the car's middle who walks on does not count
 STROLLS = 0.1  # m/s
+BEFORE = 4.0  # s before the road on which its route changes lanes, the driver begins to look into the other
 
 
 class GivingWay:
@@ -64,6 +70,13 @@ class GivingWay:
             rows = [row for key in keys for row in _ways(lanes, leg, key, start, end)]
             top = min(turning_speed(bend), world.limits.speed_limit)
             self._junctions.append((start - ahead, top, np.array(rows)))
+        self._changes: list[tuple[float, float, float]] = []
+        """For each change of lanes the stations between which it lies, and the offset of the path behind it."""
+        for k, (before, leg) in enumerate(pairwise(legs)):
+            if leg.road == before.road:
+                begin, _, end = road.starts[k : k + 3]
+                self._changes.append((begin, end, line.offset[line.place(end)[0]]))
+        self._beside = 0.0
         near, far = CROSSWALK[0], sum(CROSSWALK)
         begins = [way.start - far for way in road.passages if crossed[way.arrival]]
         begins += [way.end + near for way in road.passages if crossed[way.departure]]
@@ -98,6 +111,25 @@ class GivingWay:
             if any(_is_crossing(self._crosswalks[0][1], each) for each in persons):
                 found.append(line - view.s)
         return found
+
+    def behind(self, view: View) -> float:
+        """Returns the acceleration in m/s^2 with which the car comes behind those in the lane that its route
+        changes to; infinite where it changes to none, or is there."""
+        least = math.inf
+        for begin, end, offset in self._changes:
+            if not begin - BEFORE * view.speed < view.s < end or abs(view.t - offset) < ASIDE / 2:
+                continue
+            for other in view.others:
+                s, t = map(float, view.road.locate(other.x, other.y))
+                gap, closes = s - other.length / 2 - view.s - FRONT, max(other.speed - view.speed, 0.0)
+                if other.kind not in VEHICLES or abs(t - offset) > ASIDE or gap > HORIZON:
+                    continue
+                if gap > 0.0:
+                    least = min(least, idm(view.speed, math.inf, gap, other.speed, PULL, EASY, HEADWAY))
+                elif gap + LENGTH + other.length > -JAM - EASY * closes and self._beside < PATIENCE:
+                    least = min(least, -EASY)
+        self._beside = self._beside + view.dt if least < 0.0 else 0.0
+        return least
 
 
 def _ways(lanes: Lanes, leg: Leg, key: Leg, start: float, end: float) -> Iterator[tuple[float, ...]]:

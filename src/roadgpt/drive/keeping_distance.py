@@ -87,13 +87,13 @@ class KeepingDistance:
         to whom the driver gives way."""
         if not (view.others or view.lights):
             return command
-        lines = list[float]()
+        lines, least = list[float](), np.inf
         if view.route is not None:
             from roadgpt.drive.giving_way import GivingWay  # only drives among others load it
 
             self._giving_way = self._giving_way or GivingWay(view.route, view.world, self._line)
-            lines = self._giving_way.lines(view)
-        least = float(self.ahead(view, lines)[:, 2].min(initial=np.inf))
+            lines, least = self._giving_way.lines(view), self._giving_way.behind(view)
+        least = float(self.ahead(view, lines)[:, 2].min(initial=least))
         return slowed(self._line, view, command, max(least, -HARDEST))
 
 

@@ -58,6 +58,7 @@ URGENT = 4.0  # m/s^2, the same where the lane ends
 MARGIN = 1.0  # s, between leaving a conflict and the arrival of somebody with priority
 PATIENCE = 30.0  # s
 TURN = 2.0  # s, after which the first of several waiting vehicles goes
+SPRINT = 4.0  # m/s^2, with which the tested car may speed up before it comes
 AGAINST_MUST = (
     6.0  # m/s^2: a tested car that would have to brake harder before the line counts as in the junction
 )
@@ -245,7 +246,10 @@ def _comes_before(
             return False
         if v < STANDING and waits > TURN:  # if it has waited longer, it was asked before, and cannot go
             return False
-    return bool((line + first) / max(v, 3.0) < leaves + MARGIN)
+    arrives = (line + first) / max(v, 3.0)
+    if j == TESTED and v > STANDING:
+        arrives = time_over(v, line + first, lanes.limit[other], SPRINT)
+    return bool(arrives < leaves + MARGIN)
 
 
 @compiled
@@ -667,6 +671,7 @@ def _reserve(lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArra
     has_priority = True
     for c in range(lanes.conflict_of[ways[TESTED, k]], lanes.conflict_of[ways[TESTED, k] + 1]):
         has_priority = has_priority and lanes.conflict[c, 1] == 0
-    soon = line < SOON * row[V] and has_priority
+    top = lanes.limit[ways[TESTED, whole[TESTED, AT]]]
+    soon = has_priority and row[V] > STANDING and time_over(row[V], max(line, 0.0), top, SPRINT) < SOON
     if before < 0 or line < 0.0 or line < row[V] ** 2 / (2.0 * AGAINST_MUST) or soon:
         whole[TESTED, GRANTED] = k
