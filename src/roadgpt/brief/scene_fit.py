@@ -19,6 +19,7 @@ STOPS, ASIDE = 4.0, 6.0  # m/s2: with which the tested car can stop, and that it
 SPARE = 10.0  # m, for where the tested car starts, and for its length
 JUNCTION = 20.0  # m, across one
 LANE = 3.5  # m from lane to lane
+VERGE = 12.0  # m, from the middle lane of three to who comes from beside the road
 KMH = 3.6
 
 
@@ -79,7 +80,7 @@ def _lasts(role: Role, speed: float) -> float:
     meets = gap / closing if closing > 1.0 and role.where in ("ahead", "lane", "far", "oncoming") else 0.0
     if role.where in ACROSS and own > 0:
         rates = [abs(_most(each.accel)) for each in role.actions if each.accel]
-        meets = _most(role.away) / own + sum(own / 2 / rate for rate in rates if rate)
+        meets = (_most(role.away) or VERGE) / own + sum(own / 2 / rate for rate in rates if rate)
     lasts, now = max((_most(each.time) for each in role.actions), default=0.0) or ROLLS, own
     for action in role.actions:
         seconds, now = _takes(action, now)
