@@ -71,7 +71,7 @@ class GivingWay:
             top = min(turning_speed(bend), world.limits.speed_limit)
             self._junctions.append((start - ahead, top, np.array(rows)))
         self._changes: list[tuple[float, float, float]] = []
-        """For each change of lanes the stations between which it lies, and the offset of the path after it."""
+        """For each change of lanes its first and last station, and the offset of the path after it."""
         for k, (before, leg) in enumerate(pairwise(legs)):
             if leg.road == before.road:
                 begin, _, end = road.starts[k : k + 3]
