@@ -15,6 +15,7 @@ page docs/reference/plans.md describes the language."""
 
 import re
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from typing import Any, NamedTuple, TypeVar, get_args
 
 from pydantic import ValidationError
@@ -139,23 +140,13 @@ def _sides(text: str) -> tuple[str, ...]:
     return ways
 
 
-def _centre(text: str) -> str:
-    if text not in get_args(CentreLine):
-        raise BriefError(
-            f"a plan has no centre line '{text[:40]}'; there are {', '.join(get_args(CentreLine))}"
-        )
+def _one_of(kind: Any, fault: str, text: str) -> str:
+    if text not in get_args(kind):
+        raise BriefError(f"{fault.format(text[:40])}; there are {', '.join(get_args(kind))}")
     return text
 
 
-def _size_of_map(text: str) -> float | None:
-    return _one_number(text, "map has one size", SMALLEST_MAP, LARGEST_MAP, "m", "map_size=500")
-
-
-def _speed(text: str) -> float | None:
-    return _one_number(text, "road has one design speed", SLOWEST, FASTEST, "km/h", "speed=80")
-
-
-def _one_number(text: str, what: str, least: float, most: float, unit: str, example: str) -> float | None:
+def _one_number(what: str, least: float, most: float, unit: str, example: str, text: str) -> float | None:
     number = read_amount(text)
     if not number.exact or not least <= (number.lo or 0) <= most:
         raise BriefError(
@@ -164,11 +155,10 @@ def _one_number(text: str, what: str, least: float, most: float, unit: str, exam
     return number.lo
 
 
-def _compass(text: str) -> str:
-    if text not in get_args(Compass):
-        known = ", ".join(get_args(Compass))
-        raise BriefError(f"one cannot come from '{text[:40]}' in a plan; there are {known}")
-    return text
+_centre = partial(_one_of, CentreLine, "a plan has no centre line '{}'")
+_compass = partial(_one_of, Compass, "one cannot come from '{}' in a plan")
+_size_of_map = partial(_one_number, "map has one size", SMALLEST_MAP, LARGEST_MAP, "m", "map_size=500")
+_speed = partial(_one_number, "road has one design speed", SLOWEST, FASTEST, "km/h", "speed=80")
 
 
 def read_ways(text: str) -> tuple[Way, ...]:
