@@ -283,11 +283,8 @@ def _caption(shown: int, every: int, drives_on: bool) -> str:
         return "The one failure"
     if shown == every:
         return f"All {every} failures" + (", the worst first" if drives_on else "")
-    return (
-        f"The {shown} worst of {every:,} failures"
-        if drives_on
-        else f"The first {shown} of {every:,} failures"
-    )
+    which = f"{shown} worst" if drives_on else f"first {shown}"
+    return f"The {which} of {every:,} failures"
 
 
 def again(folder: Path, name: str, number: int) -> str:
