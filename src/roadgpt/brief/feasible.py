@@ -135,12 +135,10 @@ def _counts(brief: Brief) -> Iterator[str]:
     whole = [(getattr(brief, name), f"{noun}s") for name, noun in COUNTS.items()]
     for amount, nouns in (*counted, *whole):
         for number in filter(None, (amount.lo, amount.hi) if amount else ()):
-            is_wrong = number < 0 or number != int(number)
-            if is_wrong:
+            if number < 0 or number != int(number):
                 yield f"a road cannot have {number:g} {nouns}; ask for a whole number"
     for clause in brief.clauses:
-        is_none = 0 in (clause.count.lo, clause.count.hi)
-        if is_none:
+        if 0 in (clause.count.lo, clause.count.hi):
             yield f"a clause cannot ask for 0 {_noun(clause)}s; leave it out"
 
 
@@ -330,12 +328,8 @@ def _slopes(brief: Brief, most: float) -> Iterator[str]:
     for clause in (*brief.clauses, *brief.both_ends):
         own = clause.slope
         up_and_down = (slope in RISING and own in FALLING) or (slope in FALLING and own in RISING)
-        if (
-            clause.bump
-            or clause.kind in BUMPS
-            or up_and_down
-            or (slope in LEVEL and own in (*RISING, *FALLING))
-        ):
+        is_hill = clause.bump or clause.kind in BUMPS or (slope in LEVEL and own in (*RISING, *FALLING))
+        if is_hill or up_and_down:
             yield (
                 f"the whole road is {SLOPES[slope].names[0]}, and not {clause_text(clause)}; say the slope of"
                 " each part instead"

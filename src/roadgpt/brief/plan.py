@@ -15,6 +15,7 @@ page docs/reference/plans.md describes the language."""
 
 import re
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from typing import Any, NamedTuple, TypeVar, get_args
 
 from pydantic import ValidationError
@@ -124,6 +125,8 @@ class _Language(NamedTuple):
     """The field of what stands behind some other key, and the function that reads it."""
     of: str = ""
     """The thing, for messages; empty for a road and its parts."""
+    is_counted: bool = False
+    """Whether "x3" says how many there are."""
 
 
 def _words(*kinds: Any, flags: Iterable[str] = (), **fields: Any) -> dict[str, tuple[str, object]]:
@@ -139,23 +142,13 @@ def _sides(text: str) -> tuple[str, ...]:
     return ways
 
 
-def _centre(text: str) -> str:
-    if text not in get_args(CentreLine):
-        raise BriefError(
-            f"a plan has no centre line '{text[:40]}'; there are {', '.join(get_args(CentreLine))}"
-        )
+def _one_of(kind: Any, fault: str, text: str) -> str:
+    if text not in get_args(kind):
+        raise BriefError(f"{fault.format(text[:40])}; there are {', '.join(get_args(kind))}")
     return text
 
 
-def _size_of_map(text: str) -> float | None:
-    return _one_number(text, "map has one size", SMALLEST_MAP, LARGEST_MAP, "m", "map_size=500")
-
-
-def _speed(text: str) -> float | None:
-    return _one_number(text, "road has one design speed", SLOWEST, FASTEST, "km/h", "speed=80")
-
-
-def _one_number(text: str, what: str, least: float, most: float, unit: str, example: str) -> float | None:
+def _one_number(what: str, least: float, most: float, unit: str, example: str, text: str) -> float | None:
     number = read_amount(text)
     if not number.exact or not least <= (number.lo or 0) <= most:
         raise BriefError(
@@ -164,11 +157,10 @@ def _one_number(text: str, what: str, least: float, most: float, unit: str, exam
     return number.lo
 
 
-def _compass(text: str) -> str:
-    if text not in get_args(Compass):
-        known = ", ".join(get_args(Compass))
-        raise BriefError(f"one cannot come from '{text[:40]}' in a plan; there are {known}")
-    return text
+_centre = partial(_one_of, CentreLine, "a plan has no centre line '{}'")
+_compass = partial(_one_of, Compass, "one cannot come from '{}' in a plan")
+_size_of_map = partial(_one_number, "map has one size", SMALLEST_MAP, LARGEST_MAP, "m", "map_size=500")
+_speed = partial(_one_number, "road has one design speed", SLOWEST, FASTEST, "km/h", "speed=80")
 
 
 def read_ways(text: str) -> tuple[Way, ...]:
@@ -187,6 +179,7 @@ def read_ways(text: str) -> tuple[Way, ...]:
 CLAUSE = _Language(
     _words(side=Side, sharpness=Sharpness, size=Size, slope=Slope, bump=Bump, flags=("alternating",)),
     {**KEYS, "climb": "climb"},
+    is_counted=True,
 )
 ROAD = _Language(
     {
@@ -248,6 +241,7 @@ AN_ACTOR = _Language(
     {**_words(where=Where, side=Side), "opposite": ("side", "opposite")},
     {number.key: field for field, number in NUMBERS.items() if field in Role.model_fields},
     of="road user",
+    is_counted=True,
 )
 AN_ACTION = _Language(
     _words(side=Side),
@@ -360,8 +354,7 @@ def read_plan(line: str) -> Brief:
             names = tuple(name for name in names if name != ALIKE)
         if names:
             _set(fields, place, names if place == "beside" else _read_clause(inner))
-    for word in re.sub(rf"{INNER}\([^()]*\)", " ", wishes).split():
-        _read_word(fields, word, ROAD)
+    _read_words(fields, re.sub(rf"{INNER}\([^()]*\)", " ", wishes).split(), ROAD)
     return _made(Brief, fields, line)
 
 
@@ -389,9 +382,7 @@ def _read_network(line: str) -> Brief:
     for part in filter(None, map(str.strip, route.split(BETWEEN))):
         if is_junction(part):
             kind, *words = part.split()
-            fields: dict[str, object] = {"kind": kind}
-            for word in words:
-                _read_word(fields, word, JUNCTION)
+            fields = _read_words({"kind": kind}, words, JUNCTION)
             junctions.append(_made(JunctionClause, fields, part))
             roads.append("")
         elif roads[-1]:
@@ -437,7 +428,7 @@ def _read_map(line: str) -> MapClause:
             _set(counts[-1], "count", read_amount(word[1:]))
         else:
             is_of_kind = bool(counts) and place < last and word in get_args(Control)
-            _read_word(counts[-1] if is_of_kind else fields, word, MAP_OF_ROADS)
+            _read_words(counts[-1] if is_of_kind else fields, [word], MAP_OF_ROADS)
     kinds = tuple(_made(JunctionCount, each, line) for each in counts)
     return _made(MapClause, {**fields, "signed" if is_grid else "junctions": kinds}, line)
 
@@ -462,14 +453,12 @@ def _read_clause(text: str) -> Clause:
         )
     fields: dict[str, object] = {"kind": kind}
     for word in words:
-        if word.startswith("x") and word[1:2] in "0123456789.":
-            _set(fields, "count", read_amount(word[1:]))
-        elif word[0] in "0123456789.":
+        if word[0] in "0123456789.":
             _set(fields, BARE.get(kind, "degrees"), read_amount(word))
         elif word[0] == "r" and word[1:2] in "0123456789." and word[1:]:
             _set(fields, "radius", read_amount(word[1:]))
         else:
-            _read_word(fields, word, CLAUSE)
+            _read_words(fields, [word], CLAUSE)
     return _made(Clause, _with_side_of_climb(fields), text)
 
 
@@ -491,24 +480,29 @@ def _with_side_of_climb(fields: dict[str, object]) -> dict[str, object]:
     return {**fields, **way, "climb": climb}
 
 
-def _read_word(fields: dict[str, object], word: str, language: _Language) -> None:
-    key, equals, value = word.partition("=")
-    if word in language.words:
-        _set(fields, *language.words[word])
-    elif equals and key in language.keys:
-        _set(fields, language.keys[key], read_amount(value))
-    elif equals and key in language.others:
-        name, read = language.others[key]
-        _set(fields, name, read(value))
-    elif language.of:
-        keys = (f"{key}=" for key in (*language.keys, *language.others))
-        known = ", ".join(sorted((*language.words, *keys)))
-        raise BriefError(f"a plan has no word '{word[:40]}' for a {language.of}; there are {known}")
-    else:
-        raise BriefError(
-            f"a plan has no word '{word[:40]}' here; what is asked of the whole road stands behind |, and "
-            "the page 'Plans' of the reference describes the language"
-        )
+def _read_words(fields: dict[str, object], words: Iterable[str], language: _Language) -> dict[str, object]:
+    """Sets the fields that words name, and returns them."""
+    for word in words:
+        key, equals, value = word.partition("=")
+        if word in language.words:
+            _set(fields, *language.words[word])
+        elif equals and key in language.keys:
+            _set(fields, language.keys[key], read_amount(value))
+        elif equals and key in language.others:
+            name, read = language.others[key]
+            _set(fields, name, read(value))
+        elif language.is_counted and word.startswith("x") and word[1:2] in "0123456789.":
+            _set(fields, "count", read_amount(word[1:]))
+        elif language.of:
+            keys = (f"{key}=" for key in (*language.keys, *language.others))
+            known = ", ".join(sorted((*language.words, *keys)))
+            raise BriefError(f"a plan has no word '{word[:40]}' for a {language.of}; there are {known}")
+        else:
+            raise BriefError(
+                f"a plan has no word '{word[:40]}' here; what is asked of the whole road stands behind |, "
+                "and the page 'Plans' of the reference describes the language"
+            )
+    return fields
 
 
 def _set(fields: dict[str, object], name: str, value: object) -> None:
@@ -564,13 +558,9 @@ def read_scene(text: str) -> Scene:
         elif first in (*get_args(ActorKind), *SPOTS):
             actors.append(_read_role(part))
         elif first == TESTED_CAR:
-            for word in words:
-                _read_word(fields, word, ITSELF)
+            _read_words(fields, words, ITSELF)
         elif first == SLIPPERY:
-            patch: dict[str, object] = {}
-            for word in words:
-                _read_word(patch, word, A_PATCH)
-            patches.append(_made(Patch, patch, part))
+            patches.append(_made(Patch, _read_words({}, words, A_PATCH), part))
         elif first in WEATHER and len(words) < 2:
             _set(fields, first, read_amount(words[0]) if words else WEATHER[first])
         elif first in CONDITIONS and not words:
@@ -589,11 +579,7 @@ def _read_role(text: str) -> Role:
     kind, *words = _without_mark(head, fields)
     if kind not in get_args(ActorKind):
         kind, words = "car", [kind, *words]
-    for word in words:
-        if word.startswith("x") and word[1:2] in "0123456789.":
-            _set(fields, "count", read_amount(word[1:]))
-        else:
-            _read_word(fields, word, AN_ACTOR)
+    _read_words(fields, words, AN_ACTOR)
     if "where" not in fields:
         raise BriefError(
             f"'{text[:40]}' does not say where the {kind} is at first; there are {', '.join(SPOTS)}"
@@ -612,7 +598,7 @@ def _read_action(text: str) -> Action:
         if word[0] in "0123456789." and doing.numbers:
             _set(fields, doing.numbers[0], read_amount(word))
         else:
-            _read_word(fields, word, AN_ACTION)
+            _read_words(fields, [word], AN_ACTION)
     return _made(Action, {"what": what, **fields}, text)
 
 

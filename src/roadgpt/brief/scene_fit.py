@@ -3,15 +3,16 @@
 The tested car rolls at its speed for 4 s, then comes what happens, and then it can stop with 4 m/s2. Until
 that happens, it needs no more than 6 m/s2 sideways."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import ceil, inf, pi
 
 from roadgpt.brief.amount import Amount, at_least
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
 from roadgpt.brief.model import Brief, Clause, span
+from roadgpt.brief.normal import STRAIGHT
 from roadgpt.brief.outline import outline
 from roadgpt.brief.ranges import Range
-from roadgpt.brief.scene import ACROSS, FLOWS, LEAVES, Action, Role, Scene
+from roadgpt.brief.scene import ACROSS, FLOWS, LEAVES, Action, Role, Scene, Where
 from roadgpt.errors import BriefError
 
 ROLLS = 4.0  # s at speed before anything happens
@@ -21,6 +22,16 @@ JUNCTION = 20.0  # m, across one
 LANE = 3.5  # m from lane to lane
 VERGE = 12.0  # m, from the middle lane of three to who comes from beside the road
 KMH = 3.6
+NEEDS: Mapping[Where, str] = {
+    "lane": "two lanes in its direction; write lanes=2",
+    "far": "three lanes in its direction; write lanes=3",
+    "oncoming": "an oncoming lane; write for example against=1",
+    "ramp": "a ramp; write for example merge ramp",
+    "junction": "a junction; write for example crossroads straight",
+    "roundabout": "a roundabout; write for example roundabout exit=2",
+    "crosswalk": "a crosswalk; write crosswalk behind a junction",
+}
+"""What somebody needs of the road where it is at first, and how to ask for it."""
 
 
 def fitted(brief: Brief, scene: Scene, limit: float) -> Brief:
@@ -30,11 +41,10 @@ def fitted(brief: Brief, scene: Scene, limit: float) -> Brief:
     check_scene(scene, brief)
     if brief.map is not None or not (scene.actors or scene.speed or scene.slippery or scene.turn):
         return brief
-    speed = (max(scene.speed.lo or 0.0, scene.speed.hi or 0.0) / KMH) if scene.speed else limit
-    before, stop, is_said = _until_stop(scene, speed), speed**2 / 2 / STOPS, scene.speed is not None
+    speed = _most(scene.speed) / KMH if scene.speed else limit
+    before, stop = _until_stop(scene, speed), speed**2 / 2 / STOPS
     if not brief.stretches:
-        road = _wide_enough(_drivable(brief, before, speed, is_said), scene)
-        return _long_enough(road, before + stop, speed, is_said)
+        return _suited(brief, scene, speed, before, before + stop)
     places = [place for place in brief.junctions if place.kind not in (*LANE_KINDS, *RAMPS)]
     at_junction = bool(scene.turn) or any(role.where in ("junction", "roundabout") for role in scene.actors)
     first, *others = brief.stretches
@@ -52,18 +62,16 @@ def fitted(brief: Brief, scene: Scene, limit: float) -> Brief:
             if not (is_straight or place.kind in LANE_KINDS):
                 break
             before -= min(_length(road).hi + JUNCTION, before)
-    first = _wide_enough(_drivable(first, before - stop, speed, is_said), scene)
-    first = _long_enough(first, before, speed, is_said)
-    return brief.model_copy(update={"stretches": (first, *others), "junctions": tuple(junctions)})
+    stretches = (_suited(first, scene, speed, before - stop, before), *others)
+    return brief.model_copy(update={"stretches": stretches, "junctions": tuple(junctions)})
 
 
 def _until_stop(scene: Scene, speed: float) -> float:
     """Returns how far the tested car comes until everything has happened, in metres."""
-    seconds = max([ROLLS, *(_lasts(role, speed) for role in scene.actors)])
-    roles = scene.actors
+    roles, seconds = scene.actors, max([ROLLS, *(_lasts(role, speed) for role in scene.actors)])
     named = [role.station for role in roles] + [each.station for role in roles for each in role.actions]
-    named += [role.gap for role in roles if role.where == "oncoming"]
     named += [each.station for each in scene.slippery]
+    named += [role.gap for role in roles if role.where == "oncoming"]
     return max(seconds * speed, *map(_most, named), 0.0) + SPARE
 
 
@@ -90,15 +98,13 @@ def _lasts(role: Role, speed: float) -> float:
 
 def _takes(action: Action, speed: float) -> tuple[float, float]:
     """Returns how long an action lasts in seconds, and the speed at its end."""
+    seconds = _most(action.duration)
     if action.what in ("brake", "stop", "speed"):
         to = _most(action.to) / KMH
-        rate = _most(action.decel) or abs(_most(action.accel)) or 3.0
-        return _most(action.duration) or abs(to - speed) / rate, to
+        return seconds or abs(to - speed) / (_most(action.decel) or abs(_most(action.accel)) or 3.0), to
     if action.what in ("drift", "cut_in", "cut_out", "change_lane"):
-        return _most(action.duration) or pi / 2 * (_most(action.shift) or LANE) / (
-            _most(action.lateral) or 1.0
-        ), speed
-    return _most(action.duration), speed
+        seconds = seconds or pi / 2 * (_most(action.shift) or LANE) / (_most(action.lateral) or 1.0)
+    return seconds, speed
 
 
 def _with_way(place: JunctionClause, scene: Scene) -> JunctionClause:
@@ -117,11 +123,21 @@ def _with_way(place: JunctionClause, scene: Scene) -> JunctionClause:
     )
 
 
-def _wide_enough(road: Brief, scene: Scene) -> Brief:
+def _suited(road: Brief, scene: Scene, speed: float, straight: float, metres: float) -> Brief:
+    """Asks of a road for lanes, a length in metres, and bends that are wide, or begin after a straight."""
+    road = _drivable(road, straight, speed, scene.speed is not None)
     lanes = 1 + sum(scene.lanes_beside.values())
-    if lanes == 1 or span(road.lanes).lo >= lanes or span(road.lanes).hi < lanes:
+    if lanes > 1 and span(road.lanes).lo < lanes <= span(road.lanes).hi:
+        road = road.model_copy(update={"lanes": Amount(lo=lanes, hi=road.lanes and road.lanes.hi)})
+    have, metres = _length(road), float(ceil(metres / 10) * 10)
+    if have.hi < metres and scene.speed is not None:
+        raise BriefError(
+            f"at {KMH * speed:.0f} km/h the scene needs {metres:.0f} m of road to begin, to happen and to"
+            f" stop, and {have.hi:g} m are asked for; ask for a longer road, or for a slower car"
+        )
+    if have.lo >= metres or have.hi < metres:
         return road
-    return road.model_copy(update={"lanes": Amount(lo=lanes, hi=road.lanes and road.lanes.hi)})
+    return road.model_copy(update={"length": Amount(lo=metres, hi=road.length and road.length.hi)})
 
 
 def _length(road: Brief) -> Range:
@@ -135,44 +151,27 @@ def _length(road: Brief) -> Range:
     )
 
 
-def _long_enough(road: Brief, metres: float, speed: float, is_said: bool) -> Brief:
-    have, metres = _length(road), float(ceil(metres / 10) * 10)
-    if have.hi < metres:
-        if not is_said:
-            return road
-        raise BriefError(
-            f"at {KMH * speed:.0f} km/h the scene needs {metres:.0f} m of road to begin, to happen and to"
-            f" stop, and {have.hi:g} m are asked for; ask for a longer road, or for a slower car"
-        )
-    if have.lo >= metres:
-        return road
-    return road.model_copy(update={"length": Amount(lo=metres, hi=road.length and road.length.hi)})
-
-
 def _drivable(road: Brief, metres: float, speed: float, is_said: bool) -> Brief:
     """Asks for bends that the tested car can drive at its speed, or else for a straight before them."""
     radius, metres = float(ceil(speed**2 / ASIDE)), float(ceil(metres))
-    turns = [each for each in road.clauses if each.kind not in ("straight", "crest", "dip")]
-    lengths = (
-        span(road.clauses[0].length) if road.clauses and road.clauses[0].kind == "straight" else Range(0.0)
-    )
+    turns = [each for each in road.clauses if each.kind not in STRAIGHT]
+    has_straight = bool(road.clauses) and road.clauses[0].kind == "straight"
+    lengths = span(road.clauses[0].length) if has_straight else Range(0.0)
     if lengths.lo >= metres or (road.clauses and not turns) or span(road.turns).hi == 0:
         return road
-    free = [each.kind == "turn" and each.radius is None and each.sharpness is None for each in turns]
-    can_widen = road.radius is None and road.sharpness is None and not road.hard
-    if can_widen and not turns:
-        road = road.model_copy(update={"radius": at_least(radius)})
-    elif can_widen and any(free):
-        wide = (each.model_copy(update={"radius": at_least(radius)}) if is_free else each
-                for each, is_free in zip(turns, free, strict=True))  # fmt: skip
-        road = road.model_copy(
-            update={"clauses": tuple(next(wide) if each in turns else each for each in road.clauses)}
-        )
+    if road.radius is None and road.sharpness is None and not road.hard:
+        wide = {"radius": at_least(radius)}
+        clauses = [
+            each.model_copy(
+                update=wide if each.kind == "turn" and not (each.radius or each.sharpness) else {}
+            )
+            for each in road.clauses
+        ]
+        road = road.model_copy(update={"clauses": tuple(clauses)} if turns else wide)
     found = outline(road)
-    radii = [each.feature.radius for each in found.groups if each.feature.kind == "turn"] or [
-        found.each_turn.radius
-    ]
-    if all(each and max(each.lo, (found.each_turn.radius or each).lo) >= radius * 0.98 for each in radii):
+    least = found.each_turn.radius
+    radii = [each.feature.radius for each in found.groups if each.feature.kind == "turn"] or [least]
+    if all(each and max(each.lo, (least or each).lo) >= radius * 0.98 for each in radii):
         return road
     straight = Clause(kind="straight", length=at_least(metres))
     if lengths.hi < metres or (road.starts and road.starts.kind != "straight"):
@@ -184,7 +183,7 @@ def _drivable(road: Brief, metres: float, speed: float, is_said: bool) -> Brief:
         )
     if not road.clauses:
         return road.model_copy(update={"starts": straight})
-    rest = road.clauses[1:] if road.clauses[0].kind == "straight" else road.clauses
+    rest = road.clauses[1:] if has_straight else road.clauses
     return road.model_copy(update={"clauses": (straight, *rest), "starts": None})
 
 
@@ -198,41 +197,28 @@ def _faults(scene: Scene, brief: Brief) -> Iterator[str]:
     roads = brief.stretches or (brief,)
     along = max(span(road.lanes).hi for road in roads)
     is_one_way = all((road.lanes_text or "1+1").endswith("+0") for road in roads)
-    lacks = {
-        "lane": "two lanes in its direction; write lanes=2" if along < 2 else "",
-        "far": "three lanes in its direction; write lanes=3" if along < 3 else "",
-        "oncoming": "an oncoming lane; write for example against=1" if is_one_way else "",
-    }
+    has = {"lane": along >= 2, "far": along >= 3, "oncoming": not is_one_way}
     counts: dict[str, float] = {}
     if brief.map is None:
         places = [place for place in brief.junctions if place.kind not in LANE_KINDS]
         kinds = {place.kind for place in places}
-        has_crosswalk = any(place.crosswalk for place in places)
-        lacks |= {
-            "ramp": "" if kinds & {*RAMPS} else "a ramp; write for example merge ramp",
-            "junction": "" if kinds - {*RAMPS} else "a junction; write for example crossroads straight",
-            "roundabout": ""
-            if "roundabout" in kinds
-            else "a roundabout; write for example roundabout exit=2",
-            "crosswalk": "" if has_crosswalk else "a crosswalk; write crosswalk behind a junction",
-        }
+        has |= {"ramp": bool(kinds & {*RAMPS}), "junction": bool(kinds - {*RAMPS})}
+        has |= {"roundabout": "roundabout" in kinds, "crosswalk": any(place.crosswalk for place in places)}
         turns = sum(outline(road.as_stretch).turns.hi for road in roads)
         counts = {"junction": len(places), "turn": turns}
-    if scene.turn and lacks.get("junction"):
+    lacks = {name: need for name, need in NEEDS.items() if not has.get(name, True)}
+    if scene.turn and "junction" in lacks:
         yield f"the tested car that goes {scene.turn} at a junction needs {lacks['junction']}"
-    if scene.oncoming in FLOWS and lacks["oncoming"]:
+    if scene.oncoming in FLOWS and is_one_way:
         yield f"oncoming traffic needs {lacks['oncoming']}"
     for role in scene.actors:
         # who cuts in or overtakes can also come along the oncoming lane
         passes = role.where == "lane" and role.actions and role.actions[0].what in ("cut_in", "overtake")
         if (need := lacks.get(role.where)) and (is_one_way or not passes):
             yield f"'{role}' needs {need}"
-        if (
-            along < 2
-            and any(each.what in LEAVES for each in role.actions)
-            and role.where in ("ahead", "behind")
-        ):
-            yield f"'{role}' needs {lacks['lane']}"
+        leaves = role.where in ("ahead", "behind") and any(each.what in LEAVES for each in role.actions)
+        if leaves and along < 2:
+            yield f"'{role}' needs {NEEDS['lane']}"
         for mark in filter(None, (role.at, *(action.at for action in role.actions))):
             if mark.number > (count := counts.get(mark.of, inf)):
                 yield f"'{role}' needs {mark.of} {mark.number}, and there are {count:g}; change one of them"

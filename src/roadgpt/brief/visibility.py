@@ -35,12 +35,12 @@ def clear_range(scene: Scene) -> float:
 
 def fog_of(scene: Scene) -> float:
     """Returns the visual range in fog in metres, of a range its middle; infinite without fog."""
-    return math.inf if scene.fog is None else _middle(scene.fog, "fog")
+    return math.inf if scene.fog is None else mean(_ends(scene.fog, "fog"))
 
 
 def rain_of(scene: Scene) -> float:
     """Returns how much it rains in mm/h, of a range its middle."""
-    return 0.0 if scene.rain is None else _middle(scene.rain, "rain")
+    return 0.0 if scene.rain is None else mean(_ends(scene.rain, "rain"))
 
 
 def visual_range(scene: Scene, kind: ActorKind | Literal["lane", "lights"]) -> float:
@@ -67,7 +67,3 @@ def weather_drawn(scene: Scene, seed: int) -> Scene:
 def _ends(amount: Amount, name: str) -> tuple[float, float]:
     _, least, most, *_ = NUMBERS[name]
     return least if amount.lo is None else amount.lo, most if amount.hi is None else amount.hi
-
-
-def _middle(amount: Amount, name: str) -> float:
-    return mean(_ends(amount, name))

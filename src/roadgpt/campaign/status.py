@@ -97,15 +97,11 @@ class Status:
         return sum(self.outcomes.values())
 
     @property
-    def scenario_heads(self) -> list[str]:
-        """The outcomes that tests of scenarios have."""
-        return [*dict.fromkeys(outcome for counts in self.scenarios.values() for outcome in counts)]
-
-    @property
-    def scenario_rows(self) -> list[tuple[Any, ...]]:
-        """The name of each scenario, and its number of tests with each of these outcomes."""
-        counted = self.scenarios.items()
-        return [(name, *(its.get(each, 0) for each in self.scenario_heads)) for name, its in counted]
+    def scenario_table(self) -> list[tuple[Any, ...]]:
+        """The heads of a table, and a row for each scenario: its name, and its tests with each outcome."""
+        outcomes = [*dict.fromkeys(outcome for counts in self.scenarios.values() for outcome in counts)]
+        rows = [(name, *(its.get(each, 0) for each in outcomes)) for name, its in self.scenarios.items()]
+        return [("scenario", *map(str.lower, outcomes)), *rows]
 
     @property
     def seconds_left(self) -> float | None:

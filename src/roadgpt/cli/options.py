@@ -518,16 +518,9 @@ def _of_models() -> dict[str, tuple[Option, ...]]:
     )  # fmt: skip
     world = tuple(named([ORACLE, *of_world], *order))
     names = (
-        "reader",
-        "designer",
-        "driver",
-        "simulator",
-        "keep_driving",
-        "tracks",
-        "scenario",
-        "geometry",
+        "reader", "designer", "driver", "simulator", "keep_driving", "tracks", "scenario", "geometry",
         "rules",
-    )
+    )  # fmt: skip
     setup = tuple(named([*of_model(Parts, Heading.DESIGN, "run")], *names))
     making = (*setup[:6], *world, *setup[6:], NO_DRIVE, NO_PLOT, AXES, FORMAT, EXPORT)
     chat = tuple(of_model(ChatSettings, Heading.MODEL))

@@ -104,9 +104,9 @@ def _told(status: Status) -> Iterator[str]:
     if len(cells) > MOST_CELLS:
         yield f"and {len(cells) - MOST_CELLS:,} more cells; --json tells of all"
     if status.scenarios:
-        rows = ((name, *map("{:,}".format, counts)) for name, *counts in status.scenario_rows)
-        heads = ("scenario", *(head.lower() for head in status.scenario_heads))
-        yield from aligned([heads, *rows], "<" + ">" * len(status.scenario_heads))
+        heads, *counted = status.scenario_table
+        rows = ((name, *map("{:,}".format, counts)) for name, *counts in counted)
+        yield from aligned([heads, *rows], "<" + ">" * (len(heads) - 1))
     partly = sum(cell.partly_outside for cell in cells)
     mostly = sum(cell.mostly_outside for cell in cells)
     if partly + mostly:

@@ -39,7 +39,7 @@ from roadgpt.report.canvas import (
     plain,
     save,
 )
-from roadgpt.report.others import INSET, draw_contact, draw_others, first_contact, key_of, moment_of
+from roadgpt.report.others import INSET, draw_contact, draw_others, first_of, key_of, moment_of, step_at
 from roadgpt.report.plan_view import (
     GROUND,
     Frame,
@@ -158,7 +158,7 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
     rims = {name: {"lw": RIM, "color": SEVERE[name]} for name in OUTSIDE if name in found}
     outside: list[KeyEntry] = [(f"{name} its lane", SWATCH, style) for name, style in rims.items()]
     rows = [row for row in (outside, _network_key(road, world, frame, per_inch), key_of(run)) if row]
-    contact = None if is_part else first_contact(run)
+    contact = None if is_part else first_of(run, "collision")
     foot = BOTTOM + KEY * len(rows) + (INSET + GAP if contact else 0.0)
     figure = new_figure(header.width, foot + across * frame.height / frame.width + header.height)
     axes = add_axes(figure, LEFT, foot, right, header.height)
@@ -168,7 +168,7 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
     if contact is not None:
         below = FOOT + KEY * len(rows)
         inset = add_axes(figure, LEFT, below, right, figure.get_figheight() - below - INSET)
-        draw_contact(figure, inset, run, contact)
+        draw_contact(inset, run, contact)
     size = world.site.map_size
     show_from_above(axes, frame, 8)
     axes.set_facecolor("#d5d8dc")
@@ -337,7 +337,9 @@ def places_of(run: Run) -> list[MarkedPlace]:
         side = f"\nto the {verdict.side}" if verdict.side else ""
         s = verdict.at_s or 0.0
         station = "" if verdict.incidents is None else f", {s:.0f} m"
-        text = f"{WORDS.get(verdict.cause, verdict.cause)}{_with(verdict)}{side}{station}"
+        hit = first_of(run, "collision") if verdict.cause == "collision" else None
+        whom = f" with {hit.other}" if hit and hit.other else ""
+        text = f"{WORDS.get(verdict.cause, verdict.cause)}{whom}{side}{station}"
         return [MarkedPlace(*verdict.at_xy, s, text, _step(run, verdict.at_time))]
     if verdict is not None and verdict.kept and verdict.max_oob and run.drive is not None:
         return [_farthest(run.drive, verdict)]
@@ -382,12 +384,6 @@ def _named(group: Sequence[Incident]) -> str:
     return f"{WORDS[group[0].kind]}{other}{often}, {where}"
 
 
-def _with(verdict: Verdict) -> str:
-    """Whom the tested car touched, if that is the cause of its failure."""
-    hit = next((each.other for each in verdict.incidents or () if each.kind == "collision"), None)
-    return f" with {hit}" if verdict.cause == "collision" and hit else ""
-
-
 def _farthest(drive: Drive, verdict: Verdict) -> MarkedPlace:
     step = int(drive["outside"][: drive.lane_steps].argmax())
     x, y, s = (float(drive[name][step]) for name in ("x", "y", "s"))
@@ -421,9 +417,7 @@ def name_places(axes: Axes, places: Sequence[MarkedPlace], length: float, at_top
 
 
 def _step(run: Run, time: float | None) -> int | None:
-    if run.drive is None or time is None:
-        return None
-    return int(np.abs(run.drive["time"] - time).argmin())
+    return None if run.drive is None or time is None else step_at(run, time)
 
 
 def _where(run: Run, s: float | None, x: float | None, y: float | None) -> tuple[float, float, float] | None:

@@ -96,10 +96,9 @@ def _page(folder: Path, record: Record, status: Status, command: str) -> Page:
     sections += [Section("Feature map", covered)] if covered else []
     sections.append(Section("Outcomes", _outcomes(record, status, fields, is_paired)))
     if status.scenarios:
-        heads = ["scenario", *map(str.lower, status.scenario_heads)]
+        heads, *rows = status.scenario_table
         note = "Refused is what cannot happen on its road; results.csv has the parameters of each test."
-        of_each = [row(*each) for each in status.scenario_rows]
-        table = Table("scenarios", "Outcomes by scenario", heads, of_each, note)
+        table = Table("scenarios", "Outcomes by scenario", heads, [row(*each) for each in rows], note)
         sections.append(Section("Scenarios", [table]))
     if any(_driven(each)[1] for each in fields):
         sections.append(Section("Failures", failures(folder, record, fields[:MOST_CELLS], goes_on)))
@@ -284,11 +283,8 @@ def _caption(shown: int, every: int, drives_on: bool) -> str:
         return "The one failure"
     if shown == every:
         return f"All {every} failures" + (", the worst first" if drives_on else "")
-    return (
-        f"The {shown} worst of {every:,} failures"
-        if drives_on
-        else f"The first {shown} of {every:,} failures"
-    )
+    which = f"{shown} worst" if drives_on else f"first {shown}"
+    return f"The {which} of {every:,} failures"
 
 
 def again(folder: Path, name: str, number: int) -> str:

@@ -7,19 +7,19 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from matplotlib.patheffects import withStroke
 
 from roadgpt.brief.scene import VEHICLES, ActorKind
 from roadgpt.geometry.curve import Array
-from roadgpt.report.canvas import BLUE, GREEN, HALO, INK, POINTS, SOFT, VERMILLION
+from roadgpt.report.canvas import BLUE, GREEN, HALO, INK, POINTS, SOFT, VERMILLION, inches_of
 from roadgpt.report.plan_view import Frame, draw_road
 from roadgpt.run import Run
 from roadgpt.traffic import Tracks
 from roadgpt.traffic.actor import HEADING, SPEED, STILL, X, Y, corners
 from roadgpt.verdict import Incident
 from roadgpt.verdict.contact import turned
+from roadgpt.verdict.verdict import IncidentKind
 
 NAVY, BROWN, PINK = "#1f3763", "#7a4b16", "#c2408f"
 COLOURS: dict[ActorKind, tuple[str, str]] = {
@@ -61,19 +61,21 @@ def moment_of(run: Run) -> float:
     """Returns the time in seconds at which the others are shown: of the first contact, else of the
     failure, of the first near miss, or the end of the drive."""
     assert run.drive is not None
-    incidents = (run.verdict and run.verdict.incidents) or ()
-    hit, near = (
-        next((each.at_time for each in incidents if each.kind == kind), None)
-        for kind in ("collision", "near miss")
-    )
-    failed = run.verdict.at_time if run.verdict is not None else None
-    return next((time for time in (hit, failed, near) if time is not None), run.drive.duration)
+    hit, near = first_of(run, "collision"), first_of(run, "near miss")
+    times = (each.at_time for each in (hit, run.verdict, near) if each is not None)
+    return next((time for time in times if time is not None), run.drive.duration)
 
 
-def first_contact(run: Run) -> Incident | None:
-    """Returns the first contact of the tested car with somebody, if there was one."""
+def first_of(run: Run, kind: IncidentKind) -> Incident | None:
+    """Returns the first incident of a kind, such as a collision, if there was one."""
     incidents = (run.verdict and run.verdict.incidents) or ()
-    return next((each for each in incidents if each.kind == "collision"), None)
+    return next((each for each in incidents if each.kind == kind), None)
+
+
+def step_at(run: Run, time: float) -> int:
+    """Returns the step of the drive that is nearest to a time in seconds."""
+    assert run.drive is not None
+    return int(np.abs(run.drive["time"] - time).argmin())
 
 
 def draw_others(axes: Axes, run: Run, per_inch: float, time: float) -> None:
@@ -101,14 +103,14 @@ def draw_others(axes: Axes, run: Run, per_inch: float, time: float) -> None:
             axes.add_patch(_box(turned(outline * half, state[HEADING]) + state[[X, Y]], colour))
             if _brakes(others, number, time):
                 _lit(axes, turned(np.array(BOX) * half, state[HEADING]) + state[[X, Y]])
-    step = _step(run, time)
+    step = step_at(run, time)
     own = run.drive.corners(step)
     middle = own.mean(axis=0)
     own = middle + max(1.0, least / run.drive.car.length) * (own - middle)
     axes.add_patch(_box(own, INK))
     if run.drive["brake"][step] > PRESSED:
         _lit(axes, own)
-    contact = first_contact(run)
+    contact = first_of(run, "collision")
     if contact is not None and contact.contact is not None:
         axes.plot(*contact.contact.xy, **STAR)
 
@@ -142,7 +144,7 @@ def key_of(run: Run) -> list[tuple[str, float, dict[str, Any]]]:
     return [*found, ("brakes", 0.12, {"color": RED, "lw": 2.4})]
 
 
-def draw_contact(figure: Figure, axes: Axes, run: Run, contact: Incident) -> None:
+def draw_contact(axes: Axes, run: Run, contact: Incident) -> None:
     """Draws the tested car and the one that it touched first, enlarged, at the moment of contact, on axes
     that are wider than high, with arrows for their speeds."""
     assert run.drive is not None
@@ -156,7 +158,7 @@ def draw_contact(figure: Figure, axes: Axes, run: Run, contact: Incident) -> Non
     boxes = (own, corners(state, actor.size))
     shown = np.concatenate(boxes)
     low, high = shown.min(axis=0) - ROOM, shown.max(axis=0) + ROOM
-    wide, tall = (float(each) for each in _inches(figure, axes))
+    wide, tall = (float(each) for each in inches_of(axes))
     per_inch = max((high[0] - low[0]) / (0.6 * wide), (high[1] - low[1]) / tall)
     x, y = (low + high) / 2
     reach = np.array([wide, tall]) * per_inch / 2
@@ -169,13 +171,12 @@ def draw_contact(figure: Figure, axes: Axes, run: Run, contact: Incident) -> Non
         np.stack([np.interp(before, run.drive["time"], run.drive[name]) for name in ("x", "y")], axis=-1),
         others.at(before)[:, number, [X, Y]],
     )
-    course = (float(run.drive["heading"][_step(run, contact.at_time)]), float(state[HEADING]))
+    course = (float(run.drive["heading"][step_at(run, contact.at_time)]), float(state[HEADING]))
     speeds, lengths = (found.speed, found.other_speed), (run.drive.car.length, actor.size.length)
-    names = ("tested car", actor.name)
-    colours = (INK, COLOURS[actor.kind][1])
-    for box, way, ahead, speed, length, colour in zip(
-        boxes, ways, course, speeds, lengths, colours, strict=True
-    ):
+    names, colours = ("tested car", actor.name), (INK, COLOURS[actor.kind][1])
+    left = int(boxes[1].mean(axis=0)[0] < boxes[0].mean(axis=0)[0])
+    both = zip(boxes, ways, course, speeds, lengths, names, colours, strict=True)
+    for number, (box, way, ahead, speed, length, name, colour) in enumerate(both):
         axes.plot(way[:, 0], way[:, 1], color=colour, lw=1.6, alpha=0.35, zorder=6)
         axes.add_patch(Polygon(box, closed=True, fc=colour, ec="white", lw=1.2, zorder=8))
         middle = box.mean(axis=0)
@@ -186,48 +187,18 @@ def draw_contact(figure: Figure, axes: Axes, run: Run, contact: Incident) -> Non
             style = {"arrowstyle": "-|>", "color": "white", "lw": 1.3, "shrinkA": 0, "shrinkB": 0}
             arrow = {**style, "path_effects": around}
             axes.annotate("", tip, edge, arrowprops=arrow, zorder=9, annotation_clip=True)
-    axes.plot(*found.xy, **STAR)
-    _name(axes, frame, boxes, names, speeds, colours)
-
-
-def _name(
-    axes: Axes,
-    frame: Frame,
-    boxes: tuple[Array, Array],
-    names: tuple[str, str],
-    speeds: tuple[float, float],
-    colours: tuple[str, str],
-) -> None:
-    """Names both beside the picture of them: the left one on the left, the other on the right."""
-    left = int(boxes[1].mean(axis=0)[0] < boxes[0].mean(axis=0)[0])
-    for number, (name, speed, colour) in enumerate(zip(names, speeds, colours, strict=True)):
         is_left = number == left
         text = f"{name}\n{abs(speed) * 3.6:.0f} km/h" if abs(speed) > LEAST_MOVED else f"{name}\nstanding"
-        place = (frame.x0 if is_left else frame.x1, frame.y1)
-        style: dict[str, Any] = {
-            "ha": "left" if is_left else "right",
-            "va": "top",
-            "size": 9.5,
-            "weight": "bold",
-        }
         axes.annotate(
-            text, place, (8 if is_left else -8, -6), textcoords="offset points", color=colour, zorder=11,
-            path_effects=HALO, linespacing=1.2, **style,
+            text, (frame.x0 if is_left else frame.x1, frame.y1), (8 if is_left else -8, -6),
+            textcoords="offset points", color=colour, zorder=11, path_effects=HALO, linespacing=1.2,
+            ha="left" if is_left else "right", va="top", size=9.5, weight="bold",
         )  # fmt: skip
-
-
-def _inches(figure: Figure, axes: Axes) -> Array:
-    shape = axes.get_position()
-    return np.array([figure.get_figwidth() * shape.width, figure.get_figheight() * shape.height])
+    axes.plot(*found.xy, **STAR)
 
 
 def _box(outline: Array, colour: str) -> Polygon:
     return Polygon(outline, closed=True, fc=colour, ec="white", lw=0.8, zorder=8.5)
-
-
-def _step(run: Run, time: float) -> int:
-    assert run.drive is not None
-    return int(np.abs(run.drive["time"] - time).argmin())
 
 
 def _corners_at(run: Run, time: float) -> Array:

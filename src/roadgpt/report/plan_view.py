@@ -91,14 +91,20 @@ def _fill(axes: Axes, area: Area, colour: str, layer: float) -> None:
     axes.add_patch(PathPatch(path_of(area), fc=colour, ec="none", zorder=layer))
 
 
+def rings_of(area: Area) -> list[Array]:
+    """Returns the outlines of an area and of the holes in it, each ``(n, 2)`` and closed."""
+    import shapely
+
+    parts = shapely.get_parts(area)
+    rings = [ring for part in parts for ring in (part.exterior, *part.interiors)]
+    return [np.asarray(ring.coords, float)[:, :2] for ring in rings]
+
+
 def path_of(area: Area) -> Outline:
     """Returns an area as a matplotlib path; the holes in the area stay empty."""
     import shapely
 
-    rings = []
-    for part in shapely.get_parts(shapely.orient_polygons(area)):
-        rings += [np.asarray(ring.coords, float)[:, :2] for ring in (part.exterior, *part.interiors)]
-    codes = []
+    rings, codes = rings_of(shapely.orient_polygons(area)), []
     for ring in rings:
         codes += [Outline.MOVETO, *[Outline.LINETO] * (len(ring) - 2), Outline.CLOSEPOLY]
     return Outline(np.concatenate(rings), codes)

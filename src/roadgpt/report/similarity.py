@@ -103,7 +103,11 @@ def likeness(road: Road) -> Likeness:
 def similarity(one: Likeness, other: Likeness, mirror: bool = False) -> Similarity:
     """Returns how similar two roads are; neither their position nor their orientation matters. If ``mirror``
     is True, a road and its mirror image count as the same."""
-    metres = _plan_apart(one.shape, other.shape, mirror)
+    turned = float(abs(np.vdot(one.shape.shares, other.shape.shares)))
+    if mirror:
+        turned = max(turned, float(abs(np.vdot(one.shape.shares, other.shape.shares.conj()))))
+    square = float(one.shape.spread**2 + other.shape.spread**2 - 2 * turned / POINTS)
+    metres = float(np.sqrt(max(square, 0.0)))
     points = float(np.abs(one.grades - other.grades).mean())
     return Similarity(
         turns=_ratio(len(one.sides), len(other.sides)),
@@ -115,14 +119,6 @@ def similarity(one: Likeness, other: Likeness, mirror: bool = False) -> Similari
         metres=metres,
         points=points,
     )
-
-
-def _plan_apart(one: PlanShape, other: PlanShape, mirror: bool) -> float:
-    turned = float(abs(np.vdot(one.shares, other.shares)))
-    if mirror:
-        turned = max(turned, float(abs(np.vdot(one.shares, other.shares.conj()))))
-    square = float(one.spread**2 + other.spread**2 - 2 * turned / POINTS)
-    return float(np.sqrt(max(square, 0.0)))
 
 
 def _ratio(one: float, other: float) -> float:

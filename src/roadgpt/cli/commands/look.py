@@ -223,8 +223,6 @@ def _make(runs: list[Any], out: Path, view: str, settings: "Settings", quiet: bo
     for run in runs:
         with roads.named_in_errors(run.source or run.title):
             refuse_without_route(run.road, "filmed")
-    if any(run.drive is not None and run.drive.others is not None for run in runs):
-        warn("films do not show the others on the road yet; roadgpt view shows them")
     write(runs, out, MOUNTS.get(view, view), settings, lambda them, n: watched(them, n, "frames", quiet))
     if not quiet:
         click.echo(str(out))

@@ -158,12 +158,10 @@ def understood(brief: Brief, world: "World", given: "World") -> str:
 
 def all_remarks(brief: Brief, world: "World", given: "World") -> tuple[str, ...]:
     """Returns sentences on what is not built, or not as described; ``given`` is the World of the user."""
-    from roadgpt.design.room import lane_remarks, map_remark, need_remark, scene_remark, speed_remark
+    from roadgpt.design.room import world_remarks
 
-    found = (*remarks(brief, world.site.map_size, world.site.friction), *lane_remarks(brief, world))
-    found += speed_remark(brief, world), scene_remark(brief, world), need_remark(brief, world)
-    found += (map_remark(brief, given, world),)
-    return tuple(filter(None, found))
+    of_words = remarks(brief, world.site.map_size, world.site.friction)
+    return tuple(dict.fromkeys((*of_words, *world_remarks(brief, given, world))))  # both tell the surface
 
 
 def reading(brief: Brief) -> str:

@@ -14,6 +14,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.network import Network, network_of, only_road
 from roadgpt.network.markings import arrows, strokes
 from roadgpt.report.overview import Thumbnail
+from roadgpt.report.plan_view import rings_of
 from roadgpt.road import Road, World
 from roadgpt.verdict import percent, severity
 
@@ -161,11 +162,9 @@ def _network_around(network: Network, at: Array) -> tuple[tuple[Array, ...], tup
     import shapely
 
     box = shapely.box(*(at - ACROSS), *(at + ACROSS))
-    parts = shapely.get_parts(shapely.orient_polygons(shapely.intersection(network.paved, box)))
-    rings = [ring for part in parts for ring in (part.exterior, *part.interiors)]
+    outlines = rings_of(shapely.orient_polygons(shapely.intersection(network.paved, box)))
     lines = _near([stroke.points[:, :2] for stroke in strokes(network)], at)
-    outlines = tuple(np.asarray(ring.coords, float)[:, :2] for ring in rings)
-    return outlines, tuple((line, False) for line in lines)
+    return tuple(outlines), tuple((line, False) for line in lines)
 
 
 def _near(lines: Sequence[Array], at: Array) -> tuple[Array, ...]:

@@ -34,6 +34,7 @@ from roadgpt.network.surface import JunctionSurface, NetworkSurface, free_ends, 
 from roadgpt.report.birds_eye import minor_places_of, places_of
 from roadgpt.report.canvas import INK, LETTERS, OUTCOMES, SEVERE, VERMILLION, origin, outcome_of
 from roadgpt.report.others import COLOURS as OF_KINDS
+from roadgpt.report.plan_view import rings_of
 from roadgpt.road import Profile, Road, World
 from roadgpt.road.land import Land
 from roadgpt.road.profile import DASH, GAP, LINE
@@ -167,13 +168,16 @@ def scene(run: Run) -> dict[str, Any]:
         raise UsageError(f"there is no road to show: {run.description}")
     is_only = only_road(run.road, run.world) is not None
     more = {} if is_only else {"network": network_values(run.road, run.world)}
+    conditions = {name: getattr(run.world.scene, name) for name in ("fog", "rain", "light")}
+    if weather := Weather.of(run.world.scene, run.road):
+        more["weather"] = {**weather._asdict(), "rain": rain_of(run.world.scene)}
     return {
         "title": run.title,
         "outcome": outcome_of(run),
         "colour": OUTCOMES.get(outcome_of(run), INK),
         "letters": LETTERS.get(OUTCOMES.get(outcome_of(run), INK), "#ffffff"),
         "description": run.description,
-        "about": "; ".join(filter(None, [origin(run), _weather_text(run.world.scene)]))
+        "about": "; ".join(filter(None, [origin(run), scene_text(Scene(**conditions))]))
         + ("" if run.road.has_way else OF_FIRST_ROAD),
         "words": _words(run.road),
         "road": _road(run.road, run.world, is_only),
@@ -183,7 +187,6 @@ def scene(run: Run) -> dict[str, Any]:
         "severe": SCALE,
         "drive": _drive(run),
         **_others(run),
-        **_weather(run.road, run.world),
         "places": _places(run),
         **more,
     }
@@ -273,34 +276,18 @@ def _closest(run: Run) -> dict[str, Any]:
     measured = measure(run.world.lay(run.road), run.drive, run.world)
     near = {name: getattr(measured, name).min(axis=1) for name in ("conflict", "ttc")}
     height = np.interp(measured.time, run.drive["time"], run.drive["z"]) - run.drive.car.height
-    hits = [(each, each.contact) for each in (run.verdict and run.verdict.incidents) or () if each.contact]
-    return {
-        "near": {
-            **{
-                name: [round(float(each), CENTIMETRES) if each < LONGEST else None for each in times]
-                for name, times in near.items()
-            },
-            "who": measured.conflict.argmin(axis=1).tolist(),
-            "critical": CRITICAL,
-        },
-        "contacts": [
-            {
-                **dict(zip("xy", rounded(np.array(contact.xy), CENTIMETRES), strict=True)),
-                "z": round(float(np.interp(each.at_time, measured.time, height)), CENTIMETRES),
-                "time": round(each.at_time, MILLIMETRES),
-            }
-            for each, contact in hits
-        ],
+    told: dict[str, Any] = {
+        name: [round(float(each), CENTIMETRES) if each < LONGEST else None for each in times]
+        for name, times in near.items()
     }
-
-
-def _weather_text(scene: Scene) -> str:
-    return scene_text(Scene(fog=scene.fog, rain=scene.rain, light=scene.light))
-
-
-def _weather(road: Road, world: World) -> dict[str, Any]:
-    weather = Weather.of(world.scene, road)
-    return {} if weather is None else {"weather": {**weather._asdict(), "rain": rain_of(world.scene)}}
+    contacts = []
+    for each in (run.verdict and run.verdict.incidents) or ():
+        if each.contact:
+            z = float(np.interp(each.at_time, measured.time, height))
+            place = zip("xyz", rounded(np.array([*each.contact.xy, z]), CENTIMETRES), strict=True)
+            contacts.append({**dict(place), "time": round(each.at_time, MILLIMETRES)})
+    told |= {"who": measured.conflict.argmin(axis=1).tolist(), "critical": CRITICAL}
+    return {"near": told, "contacts": contacts}
 
 
 def _places(run: Run) -> list[dict[str, Any]]:
@@ -398,9 +385,8 @@ def _points(points: Array) -> list[float]:
 def _rings(area: Area, tolerance: float = ROUGH) -> list[list[float]]:
     import shapely
 
-    parts = shapely.get_parts(shapely.simplify(area, tolerance))
-    rings = [ring for part in parts for ring in (part.exterior, *part.interiors)]
-    return [rounded(np.asarray(ring.coords, float)[:-1, :2].reshape(-1), CENTIMETRES) for ring in rings]
+    rings = rings_of(shapely.simplify(area, tolerance))
+    return [rounded(ring[:-1].reshape(-1), CENTIMETRES) for ring in rings]
 
 
 def road_columns(
