@@ -3,9 +3,11 @@
 ``r157:cut_in slower=30`` names a scenario with another value of one parameter; ``*`` stands for any letters
 of a name, and a comma divides several. The scenarios are data, in ``scenarios.toml``."""
 
+import ast
+import operator
 import re
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
 from functools import cache
@@ -21,15 +23,17 @@ from roadgpt.reading import read_text
 Grid = Literal["nominal", "standard"]
 Value = float | str
 LANE_WIDTH = 3.5  # m, of the nominal roads
-FORMULA = re.compile(r"\{(.+?)\}")
-FUNCTIONS: dict[str, Any] = {
-    "__builtins__": {},
+OPERATORS: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
+}  # fmt: skip
+FUNCTIONS: Mapping[str, Callable[..., Any]] = {
     "abs": abs,
     "max": max,
     "sign": lambda side: 1 if side == "left" else -1,
     "side": lambda offset: "left" if offset > 0 else "right",
 }
-"""What formulas can have besides numbers, parameters and signs. Left is positive."""
+"""What formulas can have besides numbers, parameters and a minus. Left is positive."""
 TABLE: dict[str, Any] = tomllib.loads(read_text(Path(__file__).with_name("scenarios.toml")))
 WORDS: Mapping[str, str] = TABLE.pop("words")
 ROADS: Mapping[str, str] = TABLE.pop("roads")
@@ -99,8 +103,10 @@ class Scenario(NamedTuple):
 
     def _filled(self, template: str) -> str:
         names = {name: WORDS.get(str(value), value) for name, value in self.values.items()}
-        # the formulas are ours; what users give are numbers and words of a list
-        return FORMULA.sub(lambda found: _text(eval(found[1], FUNCTIONS, names)), template)  # noqa: S307
+        formula = re.compile(r"\{(.+?)\}")
+        return formula.sub(
+            lambda found: _text(_computed(ast.parse(found[1], mode="eval").body, names)), template
+        )
 
     def with_value(self, name: str, text: str) -> "Scenario":
         """Returns the scenario with another value of a parameter."""
@@ -121,6 +127,22 @@ class Scenario(NamedTuple):
             return self._replace(values={**self.values, name: float(text)})
         except ValueError:
             raise UsageError(f"'{name}' of {self.name} is a number, {unit}; not '{text[:40]}'") from None
+
+
+def _computed(node: ast.expr, names: Mapping[str, Value]) -> Any:
+    """Returns the value of a formula in braces."""
+    match node:
+        case ast.Constant(value):
+            return value
+        case ast.Name(name):
+            return names[name]
+        case ast.UnaryOp(operand=one):
+            return -_computed(one, names)
+        case ast.BinOp(left, sign, right):
+            return OPERATORS[type(sign)](_computed(left, names), _computed(right, names))
+        case ast.Call(ast.Name(name), args):
+            return FUNCTIONS[name](*(_computed(each, names) for each in args))
+    raise ValueError(f"a formula of a scenario has {ast.unparse(node)}")
 
 
 def _text(value: Value) -> str:
