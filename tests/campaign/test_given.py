@@ -17,6 +17,8 @@ from roadgpt.network import build_route, read_source
 from roadgpt.road import World, read_design
 from roadgpt.run import Setup, prove
 
+pytestmark = pytest.mark.usefixtures("no_workers")
+
 CROSSING = {
     "starting_point": [125, 20, 0],
     "theta": 90,

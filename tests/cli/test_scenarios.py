@@ -11,6 +11,8 @@ from roadgpt.brief.plan import read_scene
 from roadgpt.brief.scenarios import scenarios
 from roadgpt.run import read_run
 
+pytestmark = pytest.mark.usefixtures("no_workers")
+
 CRAWL = "ncap:CCRs ego=10"
 """The quickest of all."""
 

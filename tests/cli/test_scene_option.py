@@ -10,6 +10,8 @@ from roadgpt.brief.plan import read_scene
 from roadgpt.cli import app
 from roadgpt.run import read_run
 
+pytestmark = pytest.mark.usefixtures("no_workers")
+
 PLAN = "straight 60; turn right 40 r60"
 HARD = "truck ahead gap=30 v=50: brake 6; fog 60"
 SAID = (

@@ -6,15 +6,11 @@ from roadgpt.road import Limits, World
 from roadgpt.run import Setup, perform
 
 PLANS = [
-    "straight 400 | lanes=1 against=1",
+    "straight 300 | lanes=1 against=1",
     "turn left 90 r60; straight 200; turn right 90 r50; straight 150",
-    "| lanes=2 against=2 len=600 map_size=800",
-    "turn right 120 r40; turn left 100 r40; straight 100; turn left 60 r80",
-    "straight 200; turn left 45 r120; straight 300; turn right 60 r90",
-    "straight 150 // crossroads straight lights // straight 150",
+    "| lanes=2 against=2 len=400 map_size=800",
     "straight 150 // crossroads right lights // straight 120",
     "| lanes=2 against=2 len=150 // crossroads straight lights // | lanes=2 against=2 len=150",
-    "straight 150 // crossroads straight priority // straight 150",
     "straight 120 // crossroads straight priority // straight 120 // t_junction right priority // |",
 ]
 

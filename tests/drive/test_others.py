@@ -208,7 +208,9 @@ def test_a_file_with_wrong_others_is_told_so(
         Drive.load(tmp_path / "drive.npz")
 
 
-def test_among_others_who_stands_is_stuck_after_120_s_and_the_lane_may_be_left() -> None:
+def test_among_others_who_stands_is_stuck_after_120_s_and_the_lane_may_be_left(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     beside = tracks(("van", 100, 80, 0, 0))
     drive = simulate(ROAD, WORLD, Straight(brakes=True), replay=beside)
     assert drive.ended == "stuck"
@@ -216,6 +218,7 @@ def test_among_others_who_stands_is_stuck_after_120_s_and_the_lane_may_be_left()
     assert drive.duration == pytest.approx(120.0 + drive["time"][moves], abs=1.0)
     bend = Road.through([[20, 100], [60, 100], [90, 120], [100, 150], [100, 190]])
     assert simulate(bend, WORLD, Straight()).ended == "out_of_lane"
+    monkeypatch.setattr("roadgpt.drive.drive_monitor.STUCK_AMONG_OTHERS", 10.0)
     left = simulate(bend, WORLD, Straight(), replay=beside)
     assert left.max_outside == 1.0
     assert left.ended in ("fell", "stuck")

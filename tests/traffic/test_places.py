@@ -90,7 +90,7 @@ def test_places_beside_the_car_are_in_lanes_of_the_right_direction_or_in_none(pl
     paved = shapely.union_all([lane.area for lane in lanes])
     path = Way.along(road, world)
     count = 0
-    for s in np.linspace(5.0, road.length - 5.0, 15):
+    for s in np.linspace(5.0, road.length - 5.0, 9):
         x, y, z, heading = (float(np.interp(s, path.road_stations, column)) for column in path.points.T)
         is_inside = any(each.start - 3 < s < each.end + 3 for each in road.passages)
         own = {each for each, _ in directions(plan, np.array([[x, y, z, heading]]))[0]}
@@ -117,7 +117,7 @@ def test_places_beside_the_car_are_in_lanes_of_the_right_direction_or_in_none(pl
                 else:  # beside all lanes, but not farther than a parked car of the referee of traffic
                     assert shapely.area(shapely.intersection(box, paved)) < 0.15
                     assert paved.distance(shapely.Point(spot[0, :2])) < 3.5
-    assert count > 40
+    assert count > 24
 
 
 @pytest.mark.parametrize("text", ROLES)
@@ -272,7 +272,7 @@ def test_rows_of_cars_stand_beside_the_lanes_and_leave_junctions_and_ways_free()
 def test_the_tested_car_has_green_where_somebody_runs_the_red_light():
     plan = "straight 100 // crossroads straight lights // straight 100"
     road, world, _ = made(plan)
-    for seed in range(5):
+    for seed in range(3):
         scene = "ego v=36; car junction left: run_light; light"
         traffic = begin(road, world.changed(scene=scene), seed)
         (passage,) = road.passages

@@ -48,9 +48,9 @@ def referee() -> ModuleType:
         sys.path.remove(str(SHARED))
 
 
-def driven(name: str, **more: Any) -> Run:
-    setup = Setup(driver="robot", reader="plan", scenario=name)
-    return perform(scenario(name).plan, 1, World().changed(lane_width=LANE_WIDTH, **more), setup)
+def made(name: str, drives: bool) -> Run:
+    setup = Setup(driver="robot", reader="plan", scenario=name, drives=drives)
+    return perform(scenario(name).plan, 1, World().changed(lane_width=LANE_WIDTH), setup)
 
 
 def points(blocks: list[dict[str, list[Any]]], dropped: set[str]) -> int:
@@ -159,7 +159,7 @@ def test_silent_words_get_lanes_a_way_and_wide_bends() -> None:
 
 
 def test_the_tested_car_has_the_lanes_beside_it_that_the_scene_names() -> None:
-    run = driven("r157:cut_in_unavoidable_collision")
+    run = made("r157:cut_in_unavoidable_collision", drives=False)
     assert run.road is not None
     profile, s = run.world.profile_of(run.road), 50.0
     left, right = profile.lane(s)
@@ -170,7 +170,7 @@ def test_the_tested_car_has_the_lanes_beside_it_that_the_scene_names() -> None:
 
 @pytest.mark.parametrize("name", SAMPLE)
 def test_an_outside_judge_finds_the_scenario_in_the_exported_files(name: str, referee: ModuleType) -> None:
-    run = driven(name)
+    run = made(name, drives=True)
     with tempfile.TemporaryDirectory() as folder:
         export(run, folder, ["opendrive", "openscenario"], lambda said: None)
         holds, measured = referee.check(f"{folder}/road.drive.xosc", BY_NAME[name]["truth"])

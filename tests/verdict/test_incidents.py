@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from roadgpt.drive import COLUMNS, Box, Columns, Command, Drive, View, simulate
 from roadgpt.drive.lane_position import LanePolygon
@@ -47,11 +48,10 @@ def driven(
     columns |= {"time": dt * np.arange(n), "x": x, "y": y, "heading": heading, "speed": speed}
     table = np.arange(0, route.length, 0.01)
     points, headings = route.plan.at(table), route.heading(table)
-    for i in range(n):
-        nearest = int(np.argmin(np.hypot(points[:, 0] - x[i], points[:, 1] - y[i])))
-        dx, dy = x[i] - points[nearest, 0], y[i] - points[nearest, 1]
-        columns["s"][i] = table[nearest]
-        columns["t"][i] = dy * math.cos(headings[nearest]) - dx * math.sin(headings[nearest])
+    _, nearest = cKDTree(points[:, :2]).query(np.column_stack([x, y]))
+    dx, dy = (np.column_stack([x, y]) - points[nearest, :2]).T
+    columns["s"] = table[nearest]
+    columns["t"] = dy * np.cos(headings[nearest]) - dx * np.sin(headings[nearest])
     made = Drive("by hand", "paper", 0, Columns(columns), ended, BOX)  # type: ignore[arg-type]
     columns["outside"] = np.array([lane.outside(made.corners(i), columns["s"][i]) for i in range(n)])
     return Drive("by hand", "paper", 0, Columns(columns), ended, BOX)  # type: ignore[arg-type]

@@ -147,7 +147,8 @@ def test_lights_are_red_for_twenty_two_of_forty_seconds(tmp_path: Path) -> None:
             (found,) = (each for each in verdict.incidents or () if each.kind == "red light")
             assert found.at_s + FRONT == pytest.approx(49.5, abs=0.02)  # a line of 0.5 m next to the junction
             assert verdict.description.startswith("ran a red light after 47 m: it crossed the line at 36 km")
-        assert judge(route, replace(drive, lights=False), WORLD).kept
+        if waits % 8 == 0:  # twice while they are green, three times while they are red
+            assert judge(route, replace(drive, lights=False), WORLD).kept
     # two pairs of arms, each with 15 s of green, 3 of yellow and 2 of red for all: FHWA
     assert sum(red) == 22
     assert np.count_nonzero(np.diff([*red, red[0]])) == 2

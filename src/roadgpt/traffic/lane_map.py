@@ -260,7 +260,7 @@ def _reached(
     return count
 
 
-@inlined
+@compiled
 def place_on(lanes: LaneMap, lane: int, s: float) -> tuple[float, float, float, float, float]:
     """Returns x, y, z, the heading, and the highest speed of the bend at a station of a lane. Beyond its
     ends the lane counts as going straight on."""
