@@ -150,6 +150,7 @@ def judge(
         outcome = "FAIL" if is_avoidable else "UNAVOIDABLE"
         description += f"; {said}"
         s, (x, y), time = contact.at_s, contact.at_xy, contact.at_time
+    description += "".join(f"; {each}" for each in drive.missed)
     return Verdict(
         outcome=outcome,
         cause=cause,
