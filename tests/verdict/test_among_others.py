@@ -224,6 +224,25 @@ def test_blocked_only_with_a_free_way_ahead() -> None:
         assert kinds(judge(ROAD, oncoming, WORLD)) == ["blocked"]
 
 
+def test_who_stays_behind_somebody_of_a_scene_has_passed_and_else_is_stuck() -> None:
+    def stops(time: Any) -> Any:
+        return 10 + 10 * np.minimum(time, 2), -2 + 0 * time, 0 * time
+
+    def judged(gap: float, side: float, words: str) -> Verdict:
+        other = straight(30 + gap + 2 * HALF, side, 0, 0)
+        drive = scene(stops, 130.0, ended="stuck", car_1=("car", other))
+        return judge(ROAD, drive, WORLD.changed(scene=words))
+
+    assert judged(3.0, -2, "car ahead v=0").outcome == "PASS"
+    assert (
+        "for 30 m and stayed 3.0 m behind car 1, which stands" in judged(3.0, -2, "car ahead v=0").description
+    )
+    for gap, side, words in ((12.0, -2, "car ahead v=0"), (3.0, 2, "car oncoming"), (3.0, -2, "light")):
+        found = judged(gap, side, words)
+        assert (found.outcome, found.cause) == ("FAIL", "stuck")
+        assert "moved less than 1 m in 120 s" in found.description
+
+
 def test_speeding_takes_five_percent_one_metre_per_second_and_a_second() -> None:
     far = {"car_1": ("car", straight(0, 300, 0, 0))}
     for limit, speed, seconds, expected in (

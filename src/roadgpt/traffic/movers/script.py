@@ -129,13 +129,13 @@ class Script:
         time, car = self._now
         found = []
         for actor, act in zip(self.actors, self._acts, strict=False):
-            if act.begun == len(act.deeds):
+            is_late = act.state() is None and not act.is_gone
+            deed = act.unseen or next(iter(act.deeds[0 if is_late else act.begun :]), None)
+            if deed is None:
                 continue
-            deed = act.deeds[act.begun]
             why = "the drive ended before"
             if act.state() is None:
-                is_gone = act.forward * (act.s - act.way.length / 2) > 0
-                why = "it had left the road" if is_gone else "it was not on the road yet"
+                why = "it was not on the road yet" if is_late else "it had left the road"
             elif deed.event or ({*CUES} & {*deed.n} and act.wait(deed, time, car) == math.inf):
                 why = "what it waits for did not come"
             found.append(f"it never happened that {actor.name} {DOINGS[deed.what].said}: {why}")
