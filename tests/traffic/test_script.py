@@ -297,7 +297,7 @@ def test_what_cannot_be_is_said_in_one_sentence(scene: str, said: str) -> None:
             "car 1 cuts in: what it waits for did not",
         ),
         ("car ahead gap=200 v=150: brake time=19", "car 1 brakes: it had left the road"),
-        ("car behind gap=400 v=60: overtake", "car 1 overtakes: it was not on the road yet"),
+        ("car behind gap=600 v=60: overtake", "car 1 overtakes: it was not on the road yet"),
         ("car ahead gap=30: brake 2, stop; adult crossing right", ""),
     ],
 )
