@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from roadgpt.campaign.faults.failures import reason_of
+from roadgpt.campaign.faults.failures import manner_of, reason_of
 from roadgpt.campaign.model import Proposal
 from roadgpt.campaign.single_test import Task, features_in, result_of
 from roadgpt.cli.screen import row_of
@@ -18,7 +18,7 @@ from roadgpt.network import Route
 from roadgpt.road import Limits, Profile, Road, World
 from roadgpt.run import Request, Run, Setup
 from roadgpt.traffic import Tracks
-from roadgpt.verdict import Incident, Verdict, judge
+from roadgpt.verdict import Cause, Incident, Verdict, judge
 from roadgpt.verdict.among_others import limits_along
 from roadgpt.verdict.contact import contacts_of
 from staged import among, driven, straight, tracks
@@ -331,3 +331,10 @@ def slower(profile: Profile) -> Profile:
         tuple(replace(lane, speed_limit=5.0) for lane in side) for side in (profile.left, profile.right)
     )
     return replace(profile, left=left, right=right)
+
+
+@pytest.mark.parametrize("cause", ["red light", "failure to yield", "stop line", "collision"])
+def test_a_broken_rule_is_no_matter_of_the_bend_where_it_was_broken(cause: Cause) -> None:
+    bend = Road.through([[20, 100], [60, 100], [90, 120], [100, 150], [100, 190]])
+    assert manner_of(bend, WORLD, 60.0, "out of lane", "right").radius is not None
+    assert manner_of(bend, WORLD, 60.0, cause, None).radius is None
