@@ -241,10 +241,14 @@ def test_the_others_of_a_stored_drive_are_exactly_those_of_the_drive(tmp_path: P
     states[:, 0] = rounded(np.random.default_rng(1).uniform(-500, 500, (13, 5)))
     states[4:9, 1] = rounded(np.random.default_rng(2).uniform(-500, 500, (5, 5)))
     others = Tracks((Actor("car 1", "car", SIZES["car"]), Actor("child 1", "child", SIZES["child"])), states)
-    drive = Drive("me", "mujoco", 1, Columns(columns), "goal", Box(4.7, 1.86), others=others)
+    drive = Drive(
+        "me", "mujoco", 1, Columns(columns), "goal", Box(4.7, 1.86), (), others, True, ("it never happened",)
+    )
     alone = Drive("me", "mujoco", 1, Columns(columns), "goal", Box(4.7, 1.86))
     name = write_traces(tmp_path, 1, [("c1", 7, trace_of(drive)), ("c1", 8, trace_of(alone))])
-    found = read_traces(tmp_path / "traces" / name, "c1", 7).others
+    stored = read_traces(tmp_path / "traces" / name, "c1", 7)
+    assert (stored.lights, stored.missed) == (True, ("it never happened",))
+    found = stored.others
     assert found is not None
     assert found.actors == others.actors
     assert np.array_equal(found.states, states, equal_nan=True)

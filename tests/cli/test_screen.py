@@ -18,6 +18,14 @@ NEARLY = replace(KEPT, file="n.json", max_oob=0.62, beyond_m=1.1349)
 WRONG = Row("c.json", "INVALID", "it is too sharp", is_valid=False, validation_message="it is too sharp")
 
 
+def test_collisions_and_what_never_happened_are_told_on_the_line() -> None:
+    hit = Row("d.json", "FAIL", "hit car 1", cause="collision", at_fault=True)
+    assert hit.to_line().endswith("d.json  hit car 1")
+    never = replace(KEPT, description="kept its lane; it never happened that car 1 brakes")
+    assert never.to_line().endswith("car 1 brakes")
+    assert KEPT.to_line().endswith("a.json")
+
+
 def test_the_summary_counts_each_outcome_and_finds_the_least_margin() -> None:
     closer = Row("d.json", "PASS", "kept its lane", margin_m=0.11)
     assert summary([LEFT, KEPT, WRONG, closer]) == [

@@ -276,11 +276,38 @@ def test_places_across_the_lane() -> None:
         ("car ramp: merge", "passes no ramp"),
         ("car behind: wrong_way", "drives away before it is on the road"),
         ("adult crosswalk: cross", "passes no crosswalk"),
+        ("car lane left gap=30 v=0: brake, cut_in accel=0", "stands, so it never cuts in"),
     ],
 )
 def test_what_cannot_be_is_said_in_one_sentence(scene: str, said: str) -> None:
     with pytest.raises(UsageError, match=said):
         begin(CURVED, WORLD.changed(scene=scene), 1)
+
+
+@pytest.mark.parametrize(
+    ("scene", "said"),
+    [
+        ("car ahead gap=30: brake time=60", "car 1 brakes: the drive ended before"),
+        (
+            "car ahead gap=30: keep 1, swerve gap=90",
+            "car 1 swerves within its lane: what it waits for did not",
+        ),
+        (
+            "van ahead gap=40; car lane left gap=9: cut_in after truck 1 stop; truck behind: stop time=60",
+            "car 1 cuts in: what it waits for did not",
+        ),
+        ("car ahead gap=200 v=150: brake time=19", "car 1 brakes: it had left the road"),
+        ("car behind gap=600 v=60: overtake", "car 1 overtakes: it was not on the road yet"),
+        ("car ahead gap=30: brake 2, stop; adult crossing right", ""),
+    ],
+)
+def test_what_of_a_scene_has_not_begun_is_said(scene: str, said: str) -> None:
+    traffic = begin(STRAIGHT, WORLD.changed(scene=f"ego v=60; {scene}"), 1)
+    assert traffic is not None
+    for n in range(200):
+        x, y, _ = STRAIGHT.at(10 + n * STEP * 16.7, -1.75)
+        traffic.advance(TestedCar(x, y, 0.0, 16.7, 10 + n * STEP * 16.7, -1.75, *BOX[:2]))
+    assert traffic.missed[:1] == () if not said else said in traffic.missed[0]
 
 
 def test_a_vehicle_meets_a_tested_car_of_changing_speed_at_a_junction_and_slows_down_for_bends() -> None:

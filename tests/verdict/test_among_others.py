@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from roadgpt.campaign.faults.failures import reason_of
+from roadgpt.campaign.faults.failures import manner_of, reason_of
 from roadgpt.campaign.model import Proposal
 from roadgpt.campaign.single_test import Task, features_in, result_of
 from roadgpt.cli.screen import row_of
@@ -18,7 +18,7 @@ from roadgpt.network import Route
 from roadgpt.road import Limits, Profile, Road, World
 from roadgpt.run import Request, Run, Setup
 from roadgpt.traffic import Tracks
-from roadgpt.verdict import Incident, Verdict, judge
+from roadgpt.verdict import Cause, Incident, Verdict, judge
 from roadgpt.verdict.among_others import limits_along
 from roadgpt.verdict.contact import contacts_of
 from staged import among, driven, straight, tracks
@@ -224,6 +224,25 @@ def test_blocked_only_with_a_free_way_ahead() -> None:
         assert kinds(judge(ROAD, oncoming, WORLD)) == ["blocked"]
 
 
+def test_who_stays_behind_somebody_of_a_scene_has_passed_and_else_is_stuck() -> None:
+    def stops(time: Any) -> Any:
+        return 10 + 10 * np.minimum(time, 2), -2 + 0 * time, 0 * time
+
+    def judged(gap: float, side: float, words: str) -> Verdict:
+        other = straight(30 + gap + 2 * HALF, side, 0, 0)
+        drive = scene(stops, 130.0, ended="stuck", car_1=("car", other))
+        return judge(ROAD, drive, WORLD.changed(scene=words))
+
+    assert judged(3.0, -2, "car ahead v=0").outcome == "PASS"
+    assert (
+        "for 30 m and stayed 3.0 m behind car 1, which stands" in judged(3.0, -2, "car ahead v=0").description
+    )
+    for gap, side, words in ((12.0, -2, "car ahead v=0"), (3.0, 2, "car oncoming"), (3.0, -2, "light")):
+        found = judged(gap, side, words)
+        assert (found.outcome, found.cause) == ("FAIL", "stuck")
+        assert "moved less than 1 m in 120 s" in found.description
+
+
 def test_speeding_takes_five_percent_one_metre_per_second_and_a_second() -> None:
     far = {"car_1": ("car", straight(0, 300, 0, 0))}
     for limit, speed, seconds, expected in (
@@ -312,3 +331,10 @@ def slower(profile: Profile) -> Profile:
         tuple(replace(lane, speed_limit=5.0) for lane in side) for side in (profile.left, profile.right)
     )
     return replace(profile, left=left, right=right)
+
+
+@pytest.mark.parametrize("cause", ["red light", "failure to yield", "stop line", "collision"])
+def test_a_broken_rule_is_no_matter_of_the_bend_where_it_was_broken(cause: Cause) -> None:
+    bend = Road.through([[20, 100], [60, 100], [90, 120], [100, 150], [100, 190]])
+    assert manner_of(bend, WORLD, 60.0, "out of lane", "right").radius is not None
+    assert manner_of(bend, WORLD, 60.0, cause, None).radius is None

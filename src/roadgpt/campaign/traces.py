@@ -36,6 +36,7 @@ STEPS = {
     **dict.fromkeys(("heading", "pitch", "roll", "yaw_rate", "steer", "outside"), FINE),
     **dict.fromkeys(("ax", "ay"), COARSE),  # m/s^2
 }
+RARE = ("handovers", "lights", "missed")  # of the header, only where they are not empty
 NOT_A_NUMBER = np.iinfo(np.int32).min
 
 Whole = NDArray[np.int32]
@@ -45,7 +46,7 @@ class Trace(NamedTuple):
     """A Drive whose values are integer multiples of small steps, as stored in a file."""
 
     header: dict[str, Any]
-    """Driver, simulator, seed, how the drive ended, the dimensions of the car, and handovers, if any."""
+    """Driver, simulator, seed, how the drive ended, the dimensions of the car, and RARE, if any."""
     rows: Whole  # the columns in their order, ``(columns, n)``
     others: NDArray[np.int64] | None = None
     """The states of others on the road as ``drive.packed`` returns them; None if nobody else was there."""
@@ -54,7 +55,8 @@ class Trace(NamedTuple):
 def trace_of(drive: Drive) -> Trace:
     """Returns a Drive as a Trace, in which every value is rounded to a multiple of its column's step."""
     header: dict[str, Any] = {name: getattr(drive, name) for name in ("driver", "simulator", "seed", "ended")}
-    header |= {"car": drive.car._asdict()} | ({"handovers": drive.handovers} if drive.handovers else {})
+    header["car"] = drive.car._asdict()
+    header |= {name: found for name in RARE if (found := getattr(drive, name))}
     states = None
     if drive.others is not None:
         header["others"], states = packed(drive.others)
@@ -68,6 +70,7 @@ def drive_of(trace: Trace) -> Drive:
     """Returns the Drive of a Trace; its values differ by at most half a step from those of the original."""
     header = dict(trace.header)
     header["handovers"] = strictly(tuple[Handover, ...], header.get("handovers", ()))
+    header["missed"] = strictly(tuple[str, ...], header.get("missed", ()))
     # divided by the inverse, so that 0.02 s is 0.02 s and not its neighbour
     values = trace.rows / [[round(1 / STEPS[name])] for name in COLUMNS]
     values[trace.rows == NOT_A_NUMBER] = np.nan

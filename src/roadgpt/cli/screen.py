@@ -126,7 +126,11 @@ class Row:
             line += f"  drove {100 * self.own_share:.0f} % itself"
         if self.worse:
             line += f"  worse: {self.worse}"
-        if self.test_outcome in ("INVALID", "ERROR"):
+        if (
+            self.test_outcome in ("INVALID", "ERROR")
+            or self.at_fault is not None
+            or "it never happened that" in self.description
+        ):
             return f"{line}  {self.description.removeprefix(f'{self.file}: ')}"
         if not self.findings:
             return line

@@ -12,6 +12,7 @@ This package has two kinds of plug-ins. A simulator (``simulators/``) is a car a
         def start(self, road, world, seed) -> None     # optional: called once, before time 0
         def steer(self, view: View) -> Command         # called every 20 ms"""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
@@ -153,7 +154,7 @@ def simulate(
     more = () if traffic is None else (traffic,)  # a simulator without others takes no such argument
     drive: Drive = engine.simulate(road, world, made, seed, keep_driving, *more)
     check_motion(drive)
-    return drive
+    return drive if traffic is None else replace(drive, missed=traffic.missed)
 
 
 def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None, replays: bool = False) -> None:

@@ -138,6 +138,8 @@ class Drive:
     lights: bool = False
     """Whether traffic lights on the way ran: those of ``roadgpt.traffic.lights`` with the seed of the drive.
     Else they stayed green."""
+    missed: tuple[str, ...] = ()
+    """What of the scene had not happened when the drive ended, in sentences."""
 
     def __repr__(self) -> str:
         way = f"{self['s'][-1]:.1f} m in {self.duration:.2f} s, {len(self)} steps"
@@ -210,6 +212,7 @@ class Drive:
             **({"handovers": self.handovers} if self.handovers else {}),
             **({OTHERS: packed(self.others)[0]} if self.others is not None else {}),
             **({"lights": True} if self.lights else {}),
+            **({"missed": self.missed} if self.missed else {}),
         }
         buffer = io.BytesIO()
         with zipfile.ZipFile(buffer, "w") as archive:
@@ -267,6 +270,7 @@ def _checked(header: Any, arrays: Mapping[str, NDArray[Any]]) -> Drive:
         handovers=strictly(tuple[Handover, ...], header.get("handovers", ())),
         others=others,
         lights=bool(header.get("lights", False)),
+        missed=strictly(tuple[str, ...], header.get("missed", ())),
     )
 
 

@@ -140,6 +140,8 @@ class Act:
     matches: bool = False
     """Whether it comes to its meeting when the tested car does."""
     begun: int = 0
+    unseen: Deed | None = None
+    """The first action that began when it was gone."""
     phases: list[Phase] = field(default_factory=list)
     clock: float = 0.0
     pull: float = CHANGE
@@ -154,6 +156,11 @@ class Act:
     def along(self) -> float:
         """The station along the tested car's lane."""
         return self.s + self.shift
+
+    @property
+    def is_gone(self) -> bool:
+        """Whether it has left the road, or its way."""
+        return self.state() is None and self.forward * (self.s - self.way.length / 2) > 0
 
     def state(self) -> tuple[float, ...] | None:
         """Returns its state; None while it is not there: its box is not yet, or no longer, on its way."""
@@ -178,6 +185,7 @@ class Act:
             time, car, left = time + wait, car.after(wait), left - wait
             deed = self.deeds[self.begun]
             self.begun += 1
+            self.unseen = self.unseen or (deed if self.is_gone else None)
             self._tell("with", time)
             self.phases = self._phases(deed, car)
             self._enter(time)

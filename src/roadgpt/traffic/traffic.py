@@ -108,6 +108,13 @@ class Traffic:
         missing = len(self.actors) - len(sample)
         return np.pad(sample, ((0, missing), (0, 0)), constant_values=np.nan) if missing else sample
 
+    @property
+    def missed(self) -> tuple[str, ...]:
+        """What of the scene has not happened so far, in sentences."""
+        return tuple(
+            each for mover, _ in self._movers for each in getattr(mover, "missed", tuple[str, ...])()
+        )
+
     def tracks(self) -> Tracks:
         """Returns how everybody moved who was there at some time."""
         states = np.full((len(self._samples), len(self.actors), 5), np.nan)

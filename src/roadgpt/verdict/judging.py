@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from roadgpt.drive.drive_monitor import STUCK_AMONG_OTHERS, STUCK_TIME
 from roadgpt.errors import UsageError
 from roadgpt.network import only_road
 from roadgpt.road.world import share_in_words
+from roadgpt.traffic.actor import SPEED
 from roadgpt.verdict.oracle import EPSILON, consult, has_departed, is_outside, margins
 from roadgpt.verdict.verdict import STANDS, Cause, Face, Incident, Outcome, Side, Verdict, percent
 
@@ -78,7 +80,7 @@ FAILED: dict[Cause, str] = {
     "red light": "ran a red light {reached}: it crossed the line {fast}",
     "failure to yield": "did not give way to {whom} {reached}: it entered the junction {fast}",
     "collision": "{contact}",
-    "stuck": "was stuck {reached}: it moved less than 1 m in 10 s",
+    "stuck": "was stuck {reached}: it moved less than 1 m in {patience:.0f} s",
     "timeout": "ran out of time {reached} of {length:.0f} m",
 }
 """The description of a failure by its cause; ``_failed`` fills in the gaps."""
@@ -123,6 +125,8 @@ def judge(
     step, cause = known or _first_failure(road, drive, world)
     if cause is None or drive.others is not None:
         step, cause = _first_of(incidents or (), drive, step, cause)
+    behind = _behind(road, drive, world) if cause in ("stuck", "timeout") else ""
+    cause = None if behind else cause
     contact = _contact_of(incidents or (), cause, drive["time"][step]) if cause else None
     every = margins(road, drive, world)
     least = float(every[: drive.lane_steps].min())
@@ -134,7 +138,7 @@ def judge(
     beyond = most_beyond(road, drive, world)
     handed_to = drive.handed_to(step) if cause else None
     if cause is None:
-        description = _kept(drive, world, least, beyond)
+        description = _kept(drive, world, least, beyond, behind)
     else:
         whom = next((each.other for each in incidents or () if each.kind == cause), None)
         description = _failed(road, drive, world, step, cause, side, contact, whom)
@@ -150,6 +154,7 @@ def judge(
         outcome = "FAIL" if is_avoidable else "UNAVOIDABLE"
         description += f"; {said}"
         s, (x, y), time = contact.at_s, contact.at_xy, contact.at_time
+    description += "".join(f"; {each}" for each in drive.missed)
     return Verdict(
         outcome=outcome,
         cause=cause,
@@ -241,9 +246,27 @@ def far_beyond(beyond: float) -> str:
     return f"{beyond:.2f} m beyond the marking" if beyond >= LEAST else "on the marking"
 
 
-def _kept(drive: "Drive", world: "World", margin: float, beyond: float) -> str:
+def _behind(road: "Road", drive: "Drive", world: "World") -> str:
+    """Returns in words behind whom of a scene the car stayed at the end; empty if the way was free."""
+    if drive.others is None or not world.scene.actors or world.scene.has_flow:
+        return ""
+    from roadgpt.verdict.among_others import FREE
+    from roadgpt.verdict.measures import measure
+
+    gaps = measure(road, drive, world).gap[-1]
+    who = int(np.argmin(gaps))
+    if gaps[who] > FREE:
+        return ""
+    speed = abs(float(drive.others.states[-1, who, SPEED]))
+    does = f"drives at {speed * 3.6:.0f} km/h" if speed > STANDS else "stands"
+    return f"{gaps[who]:.1f} m behind {drive.others.actors[who].name}, which {does} in its way"
+
+
+def _kept(drive: "Drive", world: "World", margin: float, beyond: float, behind: str) -> str:
     """Describes a PASS, and how far outside its lane the car was, which the tolerance allows to a limit."""
     reached = f"to the goal after {drive['s'][-1]:.0f} m"
+    if behind:
+        reached = f"for {drive['s'][-1]:.0f} m and stayed {behind}"
     if not drive.max_outside:
         return f"kept its lane {reached}, never less than {margin:.2f} m sideways from failing"
     kept = f"kept its lane within the tolerance of {percent(world.limits.oob_tolerance)}"
@@ -282,6 +305,7 @@ def _failed(
         how="" if contact else f": {how}",
         length=road.length,
         whom=whom,
+        patience=STUCK_TIME if drive.others is None else STUCK_AMONG_OTHERS,
         contact=_touched(contact, f"after {contact.at_s:.0f} m") if contact else "hit somebody",
     )
     if contact is None or cause == "collision":

@@ -35,8 +35,9 @@ from roadgpt.road import Road, World
 from roadgpt.run import Run
 from roadgpt.verdict.verdict import Cause
 
-Way = Literal["wide", "inside", "off", "stopped", "late", "hit"]
-"""The car ran wide of a bend, cut its inside, left a straight, came to a standstill, or ran out of time."""
+Way = Literal["wide", "inside", "off", "stopped", "late", "hit", "rule"]
+"""The car ran wide of a bend, cut its inside, left a straight, came to a standstill, ran out of time, hit
+somebody, or passed a stop sign, a red light or somebody who had priority."""
 
 STRAIGHT = 1 / 250  # 1/m; a road that bends less is called straight
 GRAVITY = 9.81  # m/s^2
@@ -91,13 +92,13 @@ def reason_of(run: Run) -> FailureReason:
     road, drive, verdict, world = run.road, run.drive, run.verdict, run.world
     station, friction = float(verdict.at_s or 0.0), world.site.friction
     how = manner_of(road, world, station, verdict.cause, verdict.side)
-    if how.way in ("stopped", "late", "hit"):
+    if how.way in ("stopped", "late", "hit", "rule"):
         grade, speed = float(road.grade(station)), float(drive["speed"][-1])
-        if how.way == "hit":
+        if how.way in ("hit", "rule"):
             contact = verdict.first_contact
             speed = contact.speed if contact else speed
             told = verdict.description
-            return FailureReason("hit", told, station, None, None, speed, 0.0, friction, grade, 0.0)
+            return FailureReason(how.way, told, station, None, None, speed, 0.0, friction, grade, 0.0)
         what = "came to a standstill" if how.way == "stopped" else "was too slow to arrive in time"
         sentence = f"{what} after {station:.0f} m{_slope_text(grade, 0.0)}"
         return FailureReason(how.way, sentence, station, None, None, speed, 0.0, friction, grade, 0.0)
@@ -149,8 +150,8 @@ def manner_of(
     to which the car left its lane. The recorded drive is not needed."""
     if cause in ("stuck", "timeout"):
         return Manner("stopped" if cause == "stuck" else "late", None, None)
-    if cause == "collision":
-        return Manner("hit", None, None)
+    if cause in ("collision", "stop line", "red light", "failure to yield"):
+        return Manner("hit" if cause == "collision" else "rule", None, None)
     _, bend, place = bend_at(road, world, station)
     if abs(bend) < STRAIGHT:
         return Manner("off", None, None)

@@ -43,6 +43,7 @@ WAYS: dict[Way, str] = {
     "stopped": "came to a standstill",
     "late": "ran out of time",
     "hit": "collided with somebody",
+    "rule": "broke a rule of the road",
 }
 
 

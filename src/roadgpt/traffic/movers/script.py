@@ -12,7 +12,7 @@ import numpy as np
 
 from roadgpt.brief.amount import Frozen, exactly
 from roadgpt.brief.junctions import Side
-from roadgpt.brief.scene import ALONG, CUES, MOVING, NUMBERS, Action, Mark, Role, What, Where
+from roadgpt.brief.scene import ALONG, CUES, DOINGS, MOVING, NUMBERS, Action, Mark, Role, What, Where
 from roadgpt.check.measures import measure
 from roadgpt.errors import UsageError
 from roadgpt.plural import plural
@@ -108,6 +108,7 @@ class Script:
     def start(self, car: TestedCar) -> FloatArray:
         """Places everybody as seen from the tested car."""
         self._first, self._came, self._last = self._seen(car, 0.0), 0.0, self._seen(car, 0.0).s
+        self._now = 0.0, self._first
         self._place(self._first)
         return self._shown()
 
@@ -118,9 +119,27 @@ class Script:
         self._came += here.s - self._last
         self._last = here.s
         here = here._replace(came=self._came)
+        self._now = time, here
         for act in self._acts:
             act.move(time, here)
         return self._shown()
+
+    def missed(self) -> tuple[str, ...]:
+        """Returns what of the scene has not begun so far, a sentence for each actor."""
+        time, car = self._now
+        found = []
+        for actor, act in zip(self.actors, self._acts, strict=False):
+            is_late = act.state() is None and not act.is_gone
+            deed = act.unseen or next(iter(act.deeds[0 if is_late else act.begun :]), None)
+            if deed is None:
+                continue
+            why = "the drive ended before"
+            if act.state() is None:
+                why = "it was not on the road yet" if is_late else "it had left the road"
+            elif deed.event or ({*CUES} & {*deed.n} and act.wait(deed, time, car) == math.inf):
+                why = "what it waits for did not come"
+            found.append(f"it never happened that {actor.name} {DOINGS[deed.what].said}: {why}")
+        return tuple(found)
 
     def _shown(self) -> FloatArray:
         for n, act in enumerate(self._acts):
@@ -295,9 +314,17 @@ class _Placing:
                 f"{self._one()} cannot be where it meets the tested car in time; give another place, or more "
                 "speed"
             )
-        if act.held and first and act.wait(first, 0.0, self.car) == math.inf:
+        waits = first.event if first else None
+        if act.held and first and not waits and act.wait(first, 0.0, self.car) == math.inf:
             raise UsageError(f"{self._one()} never comes to where it is to act; give another gap or speed")
+        moves = act.cruise > 0
         for deed in self.deeds:
+            starts_to_move = deed.what in ("speed", "overtake", "pull_out")
+            moves = moves or starts_to_move or max(deed.n.get("to", 0.0), deed.n.get("accel", 0.0)) > 0
+            if deed.what in LATERAL and not moves:
+                raise UsageError(
+                    f"{self._one()} stands, so it never {DOINGS[deed.what].said}; give it a speed, or 'accel'"
+                )
             if deed.what in LATERAL and deed.what != "merge":
                 self._leads_to(act, deed)
 
