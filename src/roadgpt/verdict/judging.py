@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from roadgpt.drive.drive_monitor import STUCK_AMONG_OTHERS, STUCK_TIME
 from roadgpt.errors import UsageError
 from roadgpt.network import only_road
 from roadgpt.road.world import share_in_words
@@ -78,7 +79,7 @@ FAILED: dict[Cause, str] = {
     "red light": "ran a red light {reached}: it crossed the line {fast}",
     "failure to yield": "did not give way to {whom} {reached}: it entered the junction {fast}",
     "collision": "{contact}",
-    "stuck": "was stuck {reached}: it moved less than 1 m in 10 s",
+    "stuck": "was stuck {reached}: it moved less than 1 m in {patience:.0f} s",
     "timeout": "ran out of time {reached} of {length:.0f} m",
 }
 """The description of a failure by its cause; ``_failed`` fills in the gaps."""
@@ -281,6 +282,7 @@ def _failed(
         fast=f"at {drive['speed'][step] * 3.6:.0f} km/h",
         how="" if contact else f": {how}",
         length=road.length,
+        patience=STUCK_TIME if drive.others is None else STUCK_AMONG_OTHERS,
         whom=whom,
         contact=_touched(contact, f"after {contact.at_s:.0f} m") if contact else "hit somebody",
     )
