@@ -55,13 +55,13 @@ demo: $(VENV)/.installed
 	@echo "Now call it with: $(BIN)/roadgpt run \"a winding road downhill\" -n 5"
 	@echo "or once 'source $(BIN)/activate', then everywhere: roadgpt run ..."
 
-# Machine code and Python's bytecode are kept: without them each worker and each process of a test compiles anew.
+# The simulator is compiled once, beside the check of types; each worker and each process of a test would compile anew.
 test: export PYTHONDONTWRITEBYTECODE =
 test: $(VENV)/.installed-test judges/.installed
 	$(BIN)/python -m ruff check .
 	$(BIN)/python -m ruff format --check .
-	$(BIN)/python -m pytest -q tests/drive/test_in_traffic.py tests/drive/test_drivers_that_see.py > /dev/null & \
-	  $(BIN)/python -m mypy && wait
+	$(BIN)/python -m roadgpt run "a road" --scene light --seed 1 --out "$$(mktemp -d)/compiled" > /dev/null & \
+	  $(BIN)/python -m mypy && wait $$!
 	$(BIN)/python -m pytest -n 3 --dist worksteal
 	@echo "make test: $(SECONDS_SO_FAR) s"
 

@@ -2,6 +2,7 @@
 formula; others are functions of time."""
 
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import shapely
 
 from roadgpt import plugins
 from roadgpt.drive import Command, Drive, View, simulate
+from roadgpt.drive.keeping_distance import KeepingDistance
 from roadgpt.network import is_route
 from roadgpt.road import Limits, Road, World
 from roadgpt.run import Run, Setup, perform
@@ -142,3 +144,13 @@ def test_the_car_stops_before_the_line_at_red_and_passes_it_at_green_or_late_yel
         stopped += bool(stands)
     assert 0 < stopped < 3
     assert last.lights[0].shows == "yellow"
+
+
+def test_further_lights_that_come_into_sight_change_nothing_at_the_first() -> None:
+    """A car that could stop at 2 m/s2 when its lights became yellow goes on to stop, though it is late."""
+    seen = [(30.0, 10.0, ((30.0, "yellow"),)), (48.0, 9.0, ((12.0, "yellow"), (80.0, "red")))]
+    for begins in (0, 1):
+        keeping, stops = KeepingDistance(None), list[float]()
+        for s, speed, lights in seen[begins:]:
+            stops = keeping._to_stop_at(SimpleNamespace(s=s, speed=speed, lights=lights))
+        assert stops == ([12.0, 80.0] if begins == 0 else [80.0])

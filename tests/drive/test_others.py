@@ -250,6 +250,10 @@ def test_a_simulator_without_others_refuses_them() -> None:
 
     with pytest.raises(UsageError, match="cannot move others on the road yet"):
         simulate(ROAD, WORLD, "reference", simulator=Lonely(), replay=tracks(("car", 1, 2, 0, 0)))
+    with pytest.raises(UsageError, match=r"cannot apply the weather, .* leave the scene out"):
+        simulate(ROAD, WORLD.changed(scene="fog 60"), "reference", simulator=Lonely())
+    with pytest.raises(UsageError, match="cannot move others"):
+        simulate(ROAD, WORLD.changed(scene="light; fog 60"), "reference", simulator=Lonely())
     with pytest.raises(UsageError, match="cannot move others"):
         simulate(ROAD, WORLD, "reference", simulator="beamng", replay=tracks(("car", 1, 2, 0, 0)))
 

@@ -10,7 +10,8 @@ from scipy.spatial.transform import Rotation
 from exported import LATE, LEAVES, ROADS, WORLD, among_others, asam_says, drive
 from roadgpt.drive import COLUMNS, Box, Columns, Drive
 from roadgpt.export import Poses, save
-from roadgpt.run.exporting import poses_of
+from roadgpt.run import Setup, perform
+from roadgpt.run.exporting import export, poses_of
 from roadgpt.traffic import Tracks
 from roadgpt.traffic.recording import read_recording
 
@@ -109,3 +110,34 @@ def test_alone_the_file_is_that_of_a_drive_without_others(written: tuple[Path, T
     assert both.others is not None
     np.testing.assert_array_equal(both.others.states, tracks.states)
     assert both.others.time[-1] == pytest.approx(0.1 * (len(tracks) - 1))
+
+
+def test_lights_that_ran_are_in_the_file(tmp_path: Path) -> None:
+    plan = "straight 100 // crossroads straight lights angle=90 // straight 60 && ego v=36; "
+    run = perform(
+        f"{plan}car junction left v=36 impact=50: run_light", 1, setup=Setup(driver="robot", reader="plan")
+    )
+    assert run.verdict is not None
+    assert run.drive is not None
+    assert "red light" not in {each.kind for each in run.verdict.incidents or ()}
+    export(run, tmp_path, ["openscenario"], print)
+    file, map_ = tmp_path / "road.drive.xosc", ET.parse(tmp_path / "road.xodr").getroot()
+    assert asam_says(file) == ([], {"completed": 17})
+    (controller,) = ET.parse(file).getroot().iterfind("RoadNetwork/TrafficSignals/TrafficSignalController")
+    named = {each.attrib["id"]: each for each in map_.iterfind("controller")}[controller.attrib["name"]]
+    ids = {each.attrib["signalId"] for each in named.iter("control")}
+    roads = {
+        s.attrib["id"]: r.attrib["id"] for r in map_.iterfind("road") for s in r.iterfind("signals/signal")
+    }
+    time, (way,) = 0.0, run.road.passages
+    passed = float(np.interp(way.start, run.drive["s"], run.drive["time"]))
+    for phase in controller:
+        shown = {state.attrib["trafficSignalId"]: state.attrib["state"] for state in phase}
+        assert {*shown} == ids
+        begun, time = time, time + float(phase.attrib["duration"])
+        green = {roads[each] for each, lamps in shown.items() if lamps == "off;off;on"}
+        assert len(green) in (0, 2)  # opposite arms
+        if begun <= passed < time:
+            assert green == {str(way.arrival.road), str(way.departure.road)}
+            assert sorted(shown.values()) == ["off;off;on"] * 2 + ["on;off;off"] * 2
+    assert time == pytest.approx(2 * (15 + 3 + 2))  # FHWA: two pairs of arms

@@ -200,10 +200,7 @@ def test_what_is_there_is_found():
     for plan, wanted in (
         (PLANS[0], set()),
         (CROSSROADS, across | {"car behind: turn_off right"}),
-        (
-            PLANS[4],
-            {"car junction: run_light", "child crosswalk", "car junction left", "car junction opposite"},
-        ),
+        (PLANS[4], {"car junction: run_light", "child crosswalk", "car junction opposite"}),
         (PLANS[7], {"car roundabout", "car ahead: turn_off"}),
         (PLANS[8], {"car ramp: merge"}),
         (PLANS[9], {"car ramp: merge"}),
@@ -281,3 +278,16 @@ def test_the_tested_car_has_green_where_somebody_runs_the_red_light():
         assert shown[passage.arrival] == shown[passage.departure] == GREEN
         assert sum(each == RED for each in shown.values()) == 2
     assert way(plan, "car junction opposite: run_light") is None
+    for text in ("car junction left: cross", "car junction right v=30"):
+        with pytest.raises(UsageError, match=r"from the (left|right).*; on red write run_light$"):
+            way_of(role(text), 30.0, road, world)
+
+
+def test_who_drives_along_with_the_tested_car_has_green_too():
+    road, world, _ = made("straight 100 // crossroads left lights // straight 100")
+    (passage,) = road.passages
+    for seed in range(5):
+        traffic = begin(road, world.changed(scene="ego v=36; car junction opposite: cross"), seed)
+        opposite = passage.arms[2]
+        for end in (passage.arrival, opposite):
+            assert traffic.lights.shown(end, passage.start / 10.0) == GREEN

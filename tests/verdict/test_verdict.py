@@ -13,6 +13,7 @@ from roadgpt.errors import UsageError
 from roadgpt.road import CrossSection, Limits, Road, World
 from roadgpt.verdict import Verdict, consult, judge
 from roadgpt.verdict.oracle import LateralExtent, allowed_overhang, margins
+from staged import among, tracks
 
 STRAIGHT = Road.through([[10, 20], [60, 20], [110, 20]])  # along +x, 100 m, y of its middle is 20
 BOX = Box(4.7, 1.86)
@@ -96,6 +97,12 @@ def test_by_default_a_car_fails_where_more_than_half_of_it_is_outside() -> None:
     assert failed.description == (
         "left its lane to the left after 8 m at 36 km/h: more than half of the car was outside"
     )
+
+
+def test_among_others_who_is_stuck_stood_longer() -> None:
+    far = tracks(1.0, it=("car", lambda time: (-500 + 0 * time, 0 * time, 0.0)))
+    verdict = judge(STRAIGHT, among(drive_at([-2.0, -2.0, -2.0], ended="stuck"), far), WORLD)
+    assert verdict.description.endswith("it moved less than 1 m in 120 s")
 
 
 def test_what_comes_first_decides() -> None:

@@ -164,10 +164,10 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None, r
     from roadgpt.road import World
 
     if (replays or world.scene != Scene()) and not getattr(simulator, "moves_others", False):
-        raise UsageError(
-            "this simulator cannot move others on the road yet; leave scene and tracks out, or drive in the "
-            "simulator mujoco"
-        )
+        lacks = "move others on the road yet; leave scene and tracks out"
+        if not (replays or world.scene.has_others):
+            lacks = "apply the weather, light, surface and speed of a scene yet; leave the scene out"
+        raise UsageError(f"this simulator cannot {lacks}, or drive in the simulator mujoco")
 
     # such a simulator builds what a plain road has: no traffic on the left, no lanes that a Route has merged
     is_simple = getattr(simulator, "single_roads_only", False)

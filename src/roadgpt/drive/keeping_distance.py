@@ -32,8 +32,8 @@ class KeepingDistance:
     def __init__(self, line: DrivingLine) -> None:
         self._line = line
         self._along = self._path = np.empty(0)
-        self._stops_at: set[int] = set()
-        """The lights at which the car stops, counted from the last on the route."""
+        self._stops_at: set[float] = set()
+        """The lights at which the car stops: the stations of their lines, to the millimetre."""
         self._giving_way: GivingWay | None = None
 
     def ahead(self, view: View, lines: Sequence[float] = ()) -> FloatArray:
@@ -71,14 +71,14 @@ class KeepingDistance:
         """Returns the distances in metres to the stop lines at whose lights the car has to stop. Where it
         once began to stop, it does until the lights are green."""
         found = []
-        for number, (distance, shows) in zip(range(len(view.lights), 0, -1), view.lights, strict=True):
-            left = distance - FRONT
+        for distance, shows in view.lights:
+            left, place = distance - FRONT, round(view.s + distance, 3)
             if shows == "green" or left <= 0.0:
-                self._stops_at.discard(number)
-            elif number in self._stops_at or view.speed**2 / 2 / left < (
+                self._stops_at.discard(place)
+            elif place in self._stops_at or view.speed**2 / 2 / left < (
                 FIRM if shows == "yellow" else HARDEST
             ):
-                self._stops_at.add(number)
+                self._stops_at.add(place)
                 found.append(distance)
         return found
 

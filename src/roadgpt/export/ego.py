@@ -2,15 +2,16 @@
 
 The dimensions are those of BeamNG's ETK 800, a mid-size saloon, which the built-in simulator also uses."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, fields
-from typing import NamedTuple, Self
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
+from roadgpt.network import RoadEnd
 from roadgpt.road import Road, World
 from roadgpt.road.road import GOAL, START
 from roadgpt.road.speed_profile import GRAVITY, DrivingLimits, lane_speed
@@ -59,6 +60,9 @@ class Poses:
     speed: Array
     others: Others | None = None
     """The others on the road, from the first of these times on; None if there was nobody."""
+    lights: Mapping[int, Sequence[tuple[float, Mapping[RoadEnd, str]]]] = field(default_factory=dict)
+    """The traffic lights that ran, by the id of their junction: what they show from the first of these times
+    on until that begins anew, as seconds and "green", "yellow" or "red" for each arm."""
 
     def __post_init__(self) -> None:
         columns = [getattr(self, name) for name in self.names()]
@@ -72,7 +76,7 @@ class Poses:
     @classmethod
     def names(cls) -> list[str]:
         """Returns the names of the arrays."""
-        return [each.name for each in fields(cls) if each.name != "others"]
+        return [each.name for each in fields(cls) if each.name not in ("others", "lights")]
 
     @classmethod
     def of(cls, columns: Mapping[str, ArrayLike], others: Others | None = None) -> Self:
@@ -86,7 +90,8 @@ class Poses:
         missing = [name for name in cls.names() if name not in columns]
         if missing:
             raise UsageError(f"the poses have no {', '.join(missing)}; give those columns as well")
-        return cls(**{name: np.asarray(columns[name], float) for name in cls.names()}, others=others)
+        arrays: dict[str, Any] = {name: np.asarray(columns[name], float) for name in cls.names()}
+        return cls(**arrays, others=others)
 
     def __len__(self) -> int:
         return len(self.time)

@@ -2,7 +2,7 @@
 Runs."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +10,8 @@ import numpy as np
 from roadgpt.drive import Drive
 from roadgpt.errors import ExportError
 from roadgpt.export import Others, Poses, doubts, save
+from roadgpt.network import RoadEnd, network_of
+from roadgpt.road import Road, World
 from roadgpt.run.folder import Draw
 from roadgpt.run.model import Run
 
@@ -24,6 +26,8 @@ def export(
     if run.road is None:
         raise ExportError(f"run {run.index} has no road to export: {run.description}")
     poses = None if run.drive is None else poses_of(run.drive)
+    if run.drive is not None and poses is not None and run.drive.lights:
+        poses = replace(poses, lights=_lights(run.road, run.drive, run.world))
     written = save(run.road, folder, formats, run.world, name, poses)
     for said in doubts(run.road, formats, run.world):
         tell(said)
@@ -41,6 +45,18 @@ def poses_of(drive: Drive) -> Poses | None:
         names, kinds = tuple(each.name for each in actors), tuple(each.kind for each in actors)
         others = Others(names, kinds, sizes, drive.others.time, states)
     return Poses.of(drive.columns, others)
+
+
+def _lights(road: Road, drive: Drive, world: World) -> dict[int, list[tuple[float, dict[RoadEnd, str]]]]:
+    """Returns what the lights showed in a drive, as Poses have it."""
+    from roadgpt.traffic.lights import lights_of  # only drives with lights load it
+
+    lights, names, road = lights_of(road, world, drive.seed), ("green", "yellow", "red"), world.lay(road)
+    return {
+        junction.id: [(lasts, {arm: names[each] for arm, each in shown.items()}) for lasts, shown in phases]
+        for junction in network_of(road, world).junctions
+        if (phases := lights.cycle(junction))
+    }
 
 
 @dataclass(frozen=True)

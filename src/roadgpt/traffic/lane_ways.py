@@ -17,6 +17,7 @@ from roadgpt.network.lanes import HEADROOM, STRAIGHT_AHEAD, Lanes, lanes_of
 from roadgpt.network.network import Leg
 from roadgpt.traffic.actor import FloatArray
 from roadgpt.traffic.lane_map import LEAST
+from roadgpt.traffic.lights import Lights
 from roadgpt.traffic.way import SPACING, Way
 
 if TYPE_CHECKING:
@@ -141,10 +142,14 @@ def along_lanes(role: Role, near: float, road: "Road", world: "World") -> Way:
     for way in ways:
         if way is not None and way.meets is not None and way.meets[1] >= near:
             return way
+    what = _turn(role)
+    more = ""
+    if what != "run_light" and any(each.control == "lights" for each in passages):
+        more = "; on red write run_light"
     of = f"the {role.side}{' side' * (role.side == 'opposite')}" if role.side else "another side"
     wanted = {
         "junction": f"junction after {near:.0f} m with a road from {of}, from which somebody who "
-        f"{DOINGS[_turn(role)].said} meets the tested car",
+        f"{DOINGS[what].said} meets the tested car{more}",
         "roundabout": f"roundabout after {near:.0f} m",
         "ramp": f"ramp that joins its lane after {near:.0f} m; write for example merge main",
         "turn_off": f"junction after {near:.0f} m where somebody {role.where} can turn off",
@@ -164,24 +169,22 @@ def _through_junction(role: Role, around: Around) -> Iterator[Way | None]:
     sides = [str(role.side)] if role.side else usual[::-1] if what == "turn_across" else usual
     if role.where == "oncoming":
         sides = ["opposite"]
-    elif what == "run_light":  # opposite arms have green together
-        sides = [side for side in sides if side != "opposite"]
     least, most, kinds = TURNS[what]
+    phases = Lights(network, 0).phases
     directions = {arm.end: arm.direction for each in network.junctions for arm in each.arms}
     for passage in around.passages:
-        arms = list[tuple[int, float, list[Leg]]]()
+        arms, own = list[tuple[int, float, list[Leg]]](), phases.get(passage.arrival)
         for end in passage.arms[1:]:  # the first one is the road of arrival
             turn = float(wrap_angle(directions[end] - directions[passage.arrival] - math.pi))
             side = "opposite" if abs(turn) <= OPPOSITE else "left" if turn > 0 else "right"
-            if side in sides:
+            has_red = end in phases and phases[end] != own  # where the tested car has green
+            if side in sides and has_red == (what == "run_light"):
                 lanes = [Leg(end.road, each) for each in network.lanes_into(end)]
                 arms.append((sides.index(side), abs(turn), lanes))
         for _, _, lanes in sorted(arms):
             turns = [each for lane in lanes for each in around.turns(passage, lane)]
             for by, legs in sorted(turns, key=lambda each: (abs(each[0]), each[1])):
                 is_fit = least <= abs(by) <= most and (legs[-1] in route.legs) in kinds
-                if what == "run_light":
-                    is_fit &= around.lanes[legs[0]].control == "lights"
                 if what == "run_sign":
                     is_fit &= bool({*around.lanes.gives_way_to(legs[1])} & {*route.legs})
                 if is_fit:

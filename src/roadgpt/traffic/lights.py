@@ -7,13 +7,19 @@ of a larger road."""
 
 import math
 from collections.abc import Mapping
+from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from roadgpt.geometry import wrap_angle
+from roadgpt.network import network_of
 from roadgpt.network.network import Junction, Leg, Network, RoadEnd
 from roadgpt.traffic.following import GREEN, RED, YELLOW
 from roadgpt.traffic.lane_map import IntArray
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road, World
 
 GREEN_FOR, YELLOW_FOR, CLEARING = 15.0, 3.0, 2.0  # s
 PHASE = GREEN_FOR + YELLOW_FOR + CLEARING
@@ -63,6 +69,29 @@ class Lights:
             if arm.end in self.phases:
                 self.phases[arm.end] = (*self.phases[arm.end][:2], begin)
 
+    def cycle(self, junction: Junction) -> list[tuple[float, dict[RoadEnd, int]]]:
+        """Returns what the lights of a junction show from time 0 on, until that begins anew: seconds, and
+        GREEN, YELLOW or RED for each arm with lights. Empty if there are none."""
+        arms = [arm.end for arm in junction.arms if arm.end in self.phases]
+        if not arms:
+            return []
+        _, count, begin = self.phases[arms[0]]
+        changes = [n * PHASE + each for n in range(count) for each in (0, GREEN_FOR, GREEN_FOR + YELLOW_FOR)]
+        times = sorted({0.0, PHASE * count, *((each - begin) % (PHASE * count) for each in changes)})
+        return [(b - a, {arm: self.shown(arm, (a + b) / 2) for arm in arms}) for a, b in pairwise(times)]
+
     def of_lanes(self, ids: Mapping[Leg, RoadEnd], time: float) -> IntArray:
         """Returns what traffic in lanes sees; ``ids`` has the end of the road to which each lane leads."""
         return np.array([self.shown(end, time) for end in ids.values()])
+
+
+def lights_of(road: "Road", world: "World", seed: int) -> Lights:
+    """Returns the lights that run in a drive. If the scene has actors, the tested car has green wherever it
+    comes at its first speed: then those who drive along with it, or towards it, have green too, and who comes
+    from the side runs a red light."""
+    lights = Lights(network_of(road, world), seed)
+    if world.scene.actors:
+        for passage in road.passages:
+            if passage.control == "lights":
+                lights.show_green(passage.entered, passage.arrival, passage.start / world.first_speed)
+    return lights

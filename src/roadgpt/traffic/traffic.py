@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 import numpy as np
 
 from roadgpt import plugins
-from roadgpt.network import network_of
 from roadgpt.traffic.actor import STEP, TESTED, Actor, FloatArray, TestedCar, Tracks, rounded
 from roadgpt.traffic.recording import read_recording
 
@@ -146,21 +145,11 @@ def begin(
         "script": bool(scene.actors or scene.parked),
         "idm": scene.has_flow,
     }
-    stage = Stage(road, world, seed, replay, _lights(road, world, seed))
+    lights = None
+    if scene.has_flow or scene.actors:
+        from roadgpt.traffic.lights import lights_of
+
+        lights = lights_of(road, world, seed)
+    stage = Stage(road, world, seed, replay, lights)
     movers = [plugins.find("movers", name)(stage) for name, needed in is_needed.items() if needed]
-    return Traffic(movers, stage.lights) if movers else None
-
-
-def _lights(road: "Road", world: "World", seed: int) -> "Lights | None":
-    """Returns the lights of the map if the scene moves anybody. If somebody is to run a red light, the tested
-    car has green wherever it comes at its first speed."""
-    if not (world.scene.has_flow or world.scene.actors):
-        return None
-    from roadgpt.traffic.lights import Lights
-
-    lights = Lights(network_of(road, world), seed)
-    if any(action.what == "run_light" for role in world.scene.actors for action in role.actions):
-        for passage in road.passages:
-            if passage.control == "lights":
-                lights.show_green(passage.entered, passage.arrival, passage.start / world.first_speed)
-    return lights
+    return Traffic(movers, lights) if movers else None

@@ -42,12 +42,12 @@ def taken(
     """Yields kind, time and the other's name of what a car on a route did wrong; ``known`` are its collisions
     and near misses."""
     from roadgpt.traffic.following import GREEN, RED
-    from roadgpt.traffic.lights import Lights
+    from roadgpt.traffic.lights import lights_of
 
     assert drive.others is not None
     network, others = network_of(road, world), drive.others
     lanes, front = lanes_of(network), drive["s"] + drive.car.ahead + drive.car.length / 2
-    lights = Lights(network, drive.seed)
+    lights = lights_of(road, world, drive.seed)
 
     def shows(arm: RoadEnd, time: float) -> int:
         return lights.shown(arm, time) if drive.lights else GREEN

@@ -27,9 +27,10 @@ from roadgpt.export.ego import (
     start_of,
 )
 from roadgpt.export.exporters.opendrive import OpenDrive
+from roadgpt.export.exporters.opendrive.signals import Signals
 from roadgpt.export.markup import Value, XmlElement
 from roadgpt.geometry.curve import Array
-from roadgpt.network import legs_of, network_of, only_road
+from roadgpt.network import RoadEnd, legs_of, network_of, only_road
 from roadgpt.road import Road, World
 
 EGO = "Ego"
@@ -146,6 +147,8 @@ def replay(road: Road, world: World, poses: Poses, map_: str) -> XmlElement:
     if others:
         told = f"A car repeats its recorded drive among {len(others)} others."
     root, actions, story = _frame(road, world, map_, told, others)
+    if poses.lights:
+        _lights(root, Signals(network_of(road, world)).lights, poses)
     _start(actions, _in_world(rows[0]), round(float(poses.speed[0]), DECIMALS))
     begin = _drives_off(ground)
     maneuver = _act(story, "repeat", rule="greaterOrEqual" if others else "greaterThan")
@@ -157,6 +160,21 @@ def replay(road: Road, world: World, poses: Poses, map_: str) -> XmlElement:
         _repeat(root, story, other)
     _stop(root, {"the drive is over": _after(float(time[-1]))})
     return root
+
+
+def _lights(root: XmlElement, ids: Mapping[RoadEnd, int], poses: Poses) -> None:
+    """Adds the controllers of the lights that ran; controllers and lights have their ids in the OpenDRIVE
+    file. A state says of the red, the yellow and the green lamp whether it is on, as players read it."""
+    (network,) = (child for child in root.children if child.name == "RoadNetwork")
+    signals = network.add("TrafficSignals")
+    for junction, phases in poses.lights.items():
+        controller = signals.add("TrafficSignalController", {"name": str(junction), "delay": 0})
+        for number, (lasts, shown) in enumerate(phases, 1):
+            told: dict[str, Value] = {"name": f"phase {number}", "duration": round(lasts, DECIMALS)}
+            phase = controller.add("Phase", told)
+            for arm, colour in shown.items():
+                lamps = ";".join("on" if lamp == colour else "off" for lamp in ("red", "yellow", "green"))
+                phase.add("TrafficSignalState", {"trafficSignalId": str(ids[arm]), "state": lamps})
 
 
 def _follow(maneuver: XmlElement, name: str, time: Array, rows: Array, priority: str = "override") -> None:

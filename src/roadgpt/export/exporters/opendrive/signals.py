@@ -52,6 +52,8 @@ class Signals:
         self._signals = defaultdict[int, list[XmlElement]](list)
         self._objects = defaultdict[int, list[XmlElement]](list)
         self._controllers: dict[int, XmlElement] = {}  # by the id of the junction
+        self.lights: dict[RoadEnd, int] = {}
+        """The ids of the lights."""
         arms = [(junction, arm) for junction in network.junctions for arm in junction.arms]
         controlled = [(junction, arm) for junction, arm in arms if arm.control != "none"]
         first = 1 + max([*(each.id for each in network.roads), *(each.id for each in network.junctions)])
@@ -63,6 +65,7 @@ class Signals:
             if arm.control == "lights":
                 lights = XmlElement("controller", {"id": str(junction.id), "name": f"lights {junction.id}"})
                 controller = self._controllers.setdefault(junction.id, lights)
+                self.lights[arm.end] = number
                 controller.add("control", {"signalId": str(number), "type": "0"})
         crossed = [arm.end for _, arm in arms if arm.crosswalk]
         for number, end in enumerate(crossed, first + len(controlled)):
