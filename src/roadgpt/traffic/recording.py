@@ -138,7 +138,7 @@ def _read(path: Path, *_state: int) -> Recording:
     except OSError as error:
         raise UsageError(f"{path} cannot be read ({error.strerror}); give the path of a recording") from error
     if not found.actors:
-        raise UsageError(": ".join((f"{path}: nobody in it can be replayed", *found.remarks[:1])))
+        raise UsageError(" ".join((f"{path}: nobody in it can be replayed", *found.remarks[:1])))
     states = len(found.actors) * max(float(track.rows[-1, 0]) for track in found.tracks) / STEP
     if states > MOST_STATES:
         raise UsageError(f"{path}: its actors and seconds are too many to be replayed; cut out a part")
