@@ -6,14 +6,12 @@ then yellow for YELLOW_FOR and red for everybody for CLEARING. Source: FHWA, Tra
 of a larger road."""
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
 
 from roadgpt.geometry import wrap_angle
-from roadgpt.network.network import Junction, Leg, Network, RoadEnd
+from roadgpt.network.network import Junction, Network, RoadEnd
 from roadgpt.traffic.following import GREEN, RED, YELLOW
-from roadgpt.traffic.lane_map import IntArray
 
 GREEN_FOR, YELLOW_FOR, CLEARING = 15.0, 3.0, 2.0  # s
 PHASE = GREEN_FOR + YELLOW_FOR + CLEARING
@@ -62,7 +60,3 @@ class Lights:
         for arm in junction.arms:
             if arm.end in self.phases:
                 self.phases[arm.end] = (*self.phases[arm.end][:2], begin)
-
-    def of_lanes(self, ids: Mapping[Leg, RoadEnd], time: float) -> IntArray:
-        """Returns what traffic in lanes sees; ``ids`` has the end of the road to which each lane leads."""
-        return np.array([self.shown(end, time) for end in ids.values()])
