@@ -141,7 +141,7 @@ def drive(job):
         for a, b in hits(states, [each.size for each in mover.actors]):
             found.append((round(at, 1), mover.actors[a].name, mover.actors[b].name))
         if tick % 10 == 0:
-            lights = mover.lights.of_lanes(mover._ends, at)
+            lights = [mover.lights.shown(end, at) for end in mover._ends]
             there = {
                 row for row in waits_without_reason(mover)
                 if lights[mover._ways[row, mover._whole[row, 0]]] != RED

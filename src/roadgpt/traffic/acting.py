@@ -12,7 +12,7 @@ from typing import Literal, NamedTuple
 from roadgpt.brief.junctions import Side
 from roadgpt.brief.scene import ActorKind, Mark, What, Where
 from roadgpt.traffic.actor import STEP, Size
-from roadgpt.traffic.following import HARDEST, JAM, idm
+from roadgpt.traffic.following import HARDEST, JAM, idm, time_over
 from roadgpt.traffic.way import GRIP, Way
 
 ROLL = 4.0  # s, after which the first action begins whose begin the scene leaves open
@@ -105,6 +105,11 @@ class Slide(NamedTuple):
     begin: float
     by: float
     lasts: float
+
+    @property
+    def peak(self) -> float:
+        """The greatest speed in m/s."""
+        return math.pi / 2 * abs(self.by) / self.lasts
 
 
 @dataclass(eq=False)
@@ -249,7 +254,7 @@ class Act:
             return before
         if self.meeting and self.waits:
             way = self.forward * (self.meeting.own - self.s)
-            return self._eta(car) - time_over(way, *starts(self.kind, n, self.cruise))
+            return self._eta(car) - time_over(0.0, max(way, 0.0), *starts(self.kind, n, self.cruise))
         return self._eta(car) - LAST if self.meeting else ROLL - time
 
     def _until(self, n: Mapping[str, float], time: float, car: Car) -> float:
@@ -399,8 +404,7 @@ class Act:
     def _pace(self) -> float:
         """How fast the time of a movement sideways passes: slower for who is slow, not at all at rest."""
         assert self.slide is not None
-        peak = math.pi / 2 * abs(self.slide.by) / self.slide.lasts
-        return min(1.0, abs(self.v) / (SHARPEST * peak)) if peak else 1.0
+        return min(1.0, abs(self.v) / (SHARPEST * self.slide.peak)) if self.slide.by else 1.0
 
     def _drive(self, time: float, car: Car) -> None:
         """Moves it by some seconds, within which nothing else begins."""
@@ -423,9 +427,8 @@ class Act:
             self.t, self.slope, self.slide = self.slide.begin + self.slide.by, 0.0, None
             return
         self.t = self.slide.begin + self.slide.by * (1 - math.cos(math.pi * share)) / 2
-        aside = self.slide.by * math.pi / 2 / self.slide.lasts * math.sin(math.pi * share)
-        peak = math.pi / 2 * abs(self.slide.by) / self.slide.lasts
-        self.slope = aside / max(abs(self.v), SHARPEST * peak)
+        aside = math.copysign(self.slide.peak, self.slide.by) * math.sin(math.pi * share)
+        self.slope = aside / max(abs(self.v), SHARPEST * self.slide.peak)
 
 
 def reach(time: float, speed: float, goal: float, pull: float) -> float:
@@ -433,9 +436,3 @@ def reach(time: float, speed: float, goal: float, pull: float) -> float:
     changes = min(time, abs(goal - speed) / max(pull, 1e-9))
     last = speed + math.copysign(pull * changes, goal - speed)
     return (speed + last) / 2 * changes + last * (time - changes)
-
-
-def time_over(way: float, goal: float, pull: float) -> float:
-    """Returns in how many seconds one comes so many metres who starts at rest."""
-    start = goal**2 / 2 / pull
-    return math.sqrt(2 * max(way, 0.0) / pull) if way <= start else goal / pull + (way - start) / goal

@@ -9,8 +9,7 @@ car-following model, Transp. Res. B 15, 1981).
 
 Changes of lane: MOBIL without politeness (A. Kesting, M. Treiber, D. Helbing, General lane-changing model
 MOBIL, Transp. Res. Record 1999, 2007). A change lasts CHANGE seconds; from its first moment on the vehicle
-belongs to both
-lanes: it follows the leaders of both, and those behind it in both follow it.
+belongs to both lanes: it follows the leaders of both, and those behind it in both follow it.
 
 Junctions: a vehicle enters a junction only with a grant for its way through. A grant is given when nobody
 holds or occupies a way that meets it, and nobody to whom the vehicle gives way would arrive before it has
@@ -18,9 +17,9 @@ left the place where the ways meet. Who has waited for PATIENCE seconds goes bef
 without effort."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roadgpt.compiled import compiled, inlined
 from roadgpt.traffic.actor import STEP, FloatArray
@@ -59,16 +58,31 @@ MARGIN = 1.0  # s, between leaving a conflict and the arrival of somebody with p
 PATIENCE = 30.0  # s
 TURN = 2.0  # s, after which the first of several waiting vehicles goes
 SPRINT = 4.0  # m/s^2, with which the tested car may speed up before it comes
-AGAINST_MUST = (
-    6.0  # m/s^2: a tested car that would have to brake harder before the line counts as in the junction
-)
+AGAINST_MUST = 6.0  # m/s^2: a tested car that would have to brake harder before a line counts as beyond it
 SOON = 4.0  # s, before which a tested car with priority has its way reserved
 STANDING = 0.3  # m/s
 AFTER_CONTACT = 6.0  # m/s^2, with which a vehicle stops that the tested car has touched
 LET_IN = 10.0  # s, that somebody stands at the end of a lane before one vehicle lets it in
 ASKS = -1e9  # stands for the speed of an entry of somebody who asks to be let in
 GREEN, YELLOW, RED = 0, 1, 2
-Marks = NDArray[np.bool_]
+
+
+class Crowd(NamedTuple):
+    """Everybody on the road, as arrays that are changed in place."""
+
+    lanes: LaneMap
+    numbers: FloatArray
+    """A row of numbers for each vehicle; row TESTED is the tested car."""
+    whole: IntArray
+    """A row of whole numbers for each vehicle."""
+    ways: IntArray
+    """The lanes of each vehicle's way."""
+    states: FloatArray
+    """Where the vehicles are, ``(vehicles, 5)``."""
+    entries: FloatArray
+    """Room for the boxes in lanes: lane, first and last station, speed along it, and whose."""
+    lights: IntArray
+    """GREEN, YELLOW or RED for each lane."""
 
 
 @inlined
@@ -117,27 +131,26 @@ def _seen(row: FloatArray, entry: FloatArray, ahead: float, v: float, wanted: fl
 
 @compiled
 def _leaders(
-    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, i: int, wanted: float, entries:
-    FloatArray,
-    count: int, lane: int, offset: float,
-) -> tuple[float, float]:  # fmt: skip
+    crowd: Crowd, i: int, wanted: float, count: int, lane: int, offset: float
+) -> tuple[float, float]:
     """Returns the smallest acceleration and next speed that anybody ahead of vehicle ``i`` allows, in the
     lanes of its way, or, with ``lane`` >= 0, in this lane, which begins ``offset`` metres before the
     vehicle's middle."""
+    numbers, whole, entries = crowd.numbers, crowd.whole, crowd.entries
     row, v = numbers[i], numbers[i, V]
     least, most = math.inf, math.inf
     k, ahead = whole[i, AT], -row[S]
     if lane >= 0:
         ahead = offset
     while ahead < HORIZON and (lane >= 0 or k < whole[i, LAST]):
-        here = lane if lane >= 0 else ways[i, k]
+        here = lane if lane >= 0 else crowd.ways[i, k]
         for n in range(count):
             if entries[n, 0] == here and entries[n, 4] != i:
                 a, fastest = _seen(row, entries[n], ahead, v, wanted)
                 least, most = min(least, a), min(most, fastest)
         if lane >= 0:
             break
-        ahead += lanes.length[here]
+        ahead += crowd.lanes.length[here]
         k += 1
     return least, most
 
@@ -148,9 +161,10 @@ def _wanted(lanes: LaneMap, row: FloatArray, lane: int) -> float:
 
 
 @compiled
-def _bends(lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, i: int) -> float:
+def _bends(crowd: Crowd, i: int) -> float:
     """Returns the speed that the bends and speed limits ahead allow now."""
-    row = numbers[i]
+    lanes, whole, ways = crowd.lanes, crowd.whole, crowd.ways
+    row = crowd.numbers[i]
     fastest = _wanted(lanes, row, ways[i, whole[i, AT]])
     far = row[V] * row[V] / (2.0 * SLOWING) + 10.0
     k, s, ahead = whole[i, AT], row[S], 0.0
@@ -171,15 +185,14 @@ def _bends(lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray,
 
 
 @compiled
-def _next_way(
-    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, i: int
-) -> tuple[int, float, int]:
+def _next_way(crowd: Crowd, i: int) -> tuple[int, float, int]:
     """Returns which lane of its way is the next through a junction, the metres from the vehicle's middle to
     its start, and the lane before it; -1 where there is none within HORIZON."""
-    k, ahead = whole[i, AT], -numbers[i, S]
+    lanes, whole = crowd.lanes, crowd.whole
+    k, ahead = whole[i, AT], -crowd.numbers[i, S]
     before = -1
     while k < whole[i, LAST] and ahead < HORIZON:
-        lane = ways[i, k]
+        lane = crowd.ways[i, k]
         if lanes.junction[lane] >= 0 and k > whole[i, GRANTED]:
             return k, ahead, before
         ahead += lanes.length[lane]
@@ -189,11 +202,10 @@ def _next_way(
 
 
 @compiled
-def _holds(
-    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, j: int, lane: int, until: float
-) -> bool:
+def _holds(crowd: Crowd, j: int, lane: int, until: float) -> bool:
     """Returns whether a vehicle has a grant for a lane, and its rear has not yet passed station ``until`` of
     it."""
+    lanes, numbers, whole, ways = crowd.lanes, crowd.numbers, crowd.whole, crowd.ways
     k = whole[j, AT]
     ahead = -numbers[j, S]
     for q in range(k, whole[j, GRANTED] + 1):
@@ -230,15 +242,12 @@ def _slowest(lanes: LaneMap, lane: int) -> float:
 
 
 @compiled
-def _comes_before(
-    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, i: int, j: int, other: int, first:
-    float,
-    leaves: float, lights: IntArray,
-) -> bool:  # fmt: skip
+def _comes_before(crowd: Crowd, i: int, j: int, other: int, first: float, leaves: float) -> bool:
     """Returns whether vehicle ``i`` has to wait for ``j``, to whom it gives way: ``j`` comes to station
     ``first`` of lane ``other`` before ``i`` has left that place, in ``leaves`` seconds."""
-    q, away, before = _next_way(lanes, numbers, whole, ways, j)
-    if q < 0 or ways[j, q] != other or (before >= 0 and lights[before] == RED):
+    numbers = crowd.numbers
+    q, away, before = _next_way(crowd, j)
+    if q < 0 or crowd.ways[j, q] != other or (before >= 0 and crowd.lights[before] == RED):
         return False
     line, v, waits = away - numbers[j, LENGTH] / 2.0, numbers[j, V], numbers[i, WAIT]
     if j != TESTED:
@@ -253,18 +262,16 @@ def _comes_before(
 
 
 @compiled
-def _has_room(
-    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, present: int, i: int, k: int,
-    ahead: float, entries: FloatArray, count: int,
-) -> bool:  # fmt: skip
+def _has_room(crowd: Crowd, i: int, k: int, ahead: float, count: int) -> bool:
     """Returns whether a vehicle finds room behind lane ``k`` of its way, so that it does not stand in the
     junction: also if all who are there, or have a grant to come there, queue before the next junction;
     and also for who has waited longer, and too long."""
+    lanes, numbers, whole, ways, entries = crowd.lanes, crowd.numbers, crowd.whole, crowd.ways, crowd.entries
     needed, far = numbers[i, LENGTH] + JAM, 0.0
     there = ways[i, min(k + 1, whole[i, LAST] - 1)]
     if lanes.onward_of[there] < lanes.onward_of[there + 1]:
         queue = 0.0
-        for j in range(present):
+        for j in range(len(numbers)):
             if j != i and (whole[j, STATE] == DRIVES or whole[j, STATE] == STANDS_HIT):
                 last = max(whole[j, AT], whole[j, GRANTED] + 1)
                 if numbers[j, WAIT] > max(numbers[i, WAIT], PATIENCE):  # else cars leave no room for a bus
@@ -295,12 +302,10 @@ def _is_in(entries: FloatArray, count: int, body: float, lane: int) -> bool:
 
 
 @compiled
-def _may_enter(
-    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, present: int, i: int, k: int,
-    ahead: float, is_over: bool, entries: FloatArray, count: int, lights: IntArray,
-) -> bool:  # fmt: skip
+def _may_enter(crowd: Crowd, i: int, k: int, ahead: float, is_over: bool, count: int) -> bool:
     """Returns whether vehicle ``i`` may enter lane ``k`` of its way, which begins ``ahead`` metres before
     its middle. ``is_over`` is whether it stands beyond the line, and only waits for those with a grant."""
+    lanes, numbers, whole, ways, entries = crowd.lanes, crowd.numbers, crowd.whole, crowd.ways, crowd.entries
     lane, row = ways[i, k], numbers[i]
     begin, end = lanes.conflict_of[lane], lanes.conflict_of[lane + 1]
     slowest = _slowest(lanes, lane)
@@ -314,30 +319,28 @@ def _may_enter(
                 return False
         until = max(ahead, 0.0) + lanes.conflict_at[c, 1] + row[LENGTH] / 2.0
         leaves = time_over(row[V], until, slowest, row[PULL])
-        for j in range(present):
+        for j in range(len(numbers)):
             if j == i or whole[j, STATE] != DRIVES:
                 continue
-            if _holds(lanes, numbers, whole, ways, j, other, last):
+            if _holds(crowd, j, other, last):
                 return False
             if is_over or lanes.conflict[c, 1] == 0:
                 continue
-            if _comes_before(lanes, numbers, whole, ways, i, j, other, first, leaves, lights):
+            if _comes_before(crowd, i, j, other, first, leaves):
                 return False
     if begin == end or lanes.leaves_ring[lane]:  # in a ring everybody moves up, or it would stand for ever
         return True
-    return _has_room(lanes, numbers, whole, ways, present, i, k, ahead, entries, count)
+    return _has_room(crowd, i, k, ahead, count)
 
 
 @compiled
-def _is_first(
-    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, present: int, i: int, k: int,
-    entries: FloatArray, count: int,
-) -> bool:  # fmt: skip
+def _is_first(crowd: Crowd, i: int, k: int, count: int) -> bool:
     """Returns whether nobody without a grant is between vehicle ``i`` and lane ``k`` of its way."""
+    numbers, whole, ways, entries = crowd.numbers, crowd.whole, crowd.ways, crowd.entries
     ahead = -numbers[i, S]
     for q in range(whole[i, AT], k):
         lane = ways[i, q]
-        for j in range(present):
+        for j in range(len(numbers)):
             if (
                 j == i
                 or whole[j, STATE] == ABSENT
@@ -355,22 +358,19 @@ def _is_first(
                 and entries[n, 3] != ASKS
             ):
                 return False
-        ahead += lanes.length[lane]
+        ahead += crowd.lanes.length[lane]
     return True
 
 
 @compiled
-def _to_stop(
-    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, present: int, i: int, entries:
-    FloatArray,
-    count: int, lights: IntArray,
-) -> float:  # fmt: skip
+def _to_stop(crowd: Crowd, i: int, count: int) -> float:
     """Gives a vehicle a grant for the junction ahead if it may enter, and returns the metres from its front
     to the place where it has to stop otherwise; infinite if there is none."""
-    k, ahead, before = _next_way(lanes, numbers, whole, ways, i)
+    lanes, whole, ways, lights = crowd.lanes, crowd.whole, crowd.ways, crowd.lights
+    k, ahead, before = _next_way(crowd, i)
     if k < 0:
         return math.inf
-    row = numbers[i]
+    row = crowd.numbers[i]
     line = ahead - row[LENGTH] / 2.0
     if before >= 0:
         line -= lanes.length[before] - lanes.stop[before]
@@ -389,9 +389,9 @@ def _to_stop(
         return float(line)
     if row[PROGRESS] < 1.0:  # it might wait for the lane that it leaves, and others for its grant
         return float(line)
-    if not _is_first(lanes, numbers, whole, ways, present, i, k, entries, count):
+    if not _is_first(crowd, i, k, count):
         return float(line)
-    if not _may_enter(lanes, numbers, whole, ways, present, i, k, ahead, is_over, entries, count, lights):
+    if not _may_enter(crowd, i, k, ahead, is_over, count):
         return float(line)
     through = lanes.junction[ways[i, k]]
     while k < whole[i, LAST] and lanes.junction[ways[i, k]] == through:
@@ -403,14 +403,11 @@ def _to_stop(
 
 
 @compiled
-def _change(
-    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, i: int, side: int, own: float,
-    wanted: float,
-    entries: FloatArray, count: int, must: bool,
-) -> float:  # fmt: skip
+def _change(crowd: Crowd, i: int, side: int, own: float, wanted: float, count: int, must: bool) -> float:
     """Returns by how much the acceleration of a vehicle rises if it changes to the lane on one side (0:
     left, 1: right); minus infinity if it cannot or may not."""
-    lane, row = ways[i, whole[i, AT]], numbers[i]
+    lanes = crowd.lanes
+    lane, row = crowd.ways[i, crowd.whole[i, AT]], crowd.numbers[i]
     target = lanes.beside[lane, side]
     if target < 0 or (lanes.ends[target] and not must):
         return -math.inf
@@ -424,7 +421,7 @@ def _change(
         idm(row[V], wanted, math.inf, 0.0, row[PULL], row[BRAKE], row[HEADWAY]),
     )
     for n in range(count):
-        entry = entries[n]
+        entry = crowd.entries[n]
         back, offset = False, 0.0
         if entry[4] == i or entry[3] == ASKS:
             continue
@@ -449,18 +446,17 @@ def _change(
 
 
 @compiled
-def positions(
-    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, present: int, out: FloatArray
-) -> None:
-    """Writes the states of the vehicles that are there into ``out``, and NaN for the others."""
-    for i in range(present):
+def _locate(crowd: Crowd) -> None:
+    """Writes the states of the vehicles that are there, and NaN for the others."""
+    numbers, whole, out = crowd.numbers, crowd.whole, crowd.states
+    for i in range(len(numbers)):
         before = out[i, 3]
         out[i] = math.nan
         if i == TESTED or whole[i, STATE] == ABSENT or whole[i, STATE] == GONE:
             continue
         row = numbers[i]
-        lane = ways[i, whole[i, AT]]
-        x, y, z, heading, _ = place_on(lanes, lane, row[S])
+        lane = crowd.ways[i, whole[i, AT]]
+        x, y, z, heading, _ = place_on(crowd.lanes, lane, row[S])
         aside = row[ASIDE]
         slant = 0.0
         if row[PROGRESS] < 1.0:
@@ -487,24 +483,22 @@ def _add(entries: FloatArray, count: int, lane: int, s: float, length: float, sp
 
 
 @compiled
-def _boxes(
-    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, present: int, states: FloatArray,
-    bodies: FloatArray, entries: FloatArray,
-) -> int:  # fmt: skip
+def _boxes(crowd: Crowd, bodies: FloatArray) -> int:
     """Writes which lanes everybody is in into ``entries``; returns the number of rows. Who changes lanes is
     in the new one from the first moment, and who asks to be let in stands for those behind it in the lane
     that it wants."""
+    lanes, numbers, whole, entries = crowd.lanes, crowd.numbers, crowd.whole, crowd.entries
     count = 0
-    for i in range(present):
+    for i in range(len(numbers)):
         if whole[i, STATE] == ABSENT or whole[i, STATE] == GONE:
             continue
-        begin, state, row = count, states[i], numbers[i]
+        begin, state, row = count, crowd.states[i], numbers[i]
         count = touched(
             lanes, state[0], state[1], state[3], row[LENGTH], row[WIDTH], row[V], float(i), entries, count
         )
         if i == TESTED:
             continue
-        lane, is_there = ways[i, whole[i, AT]], row[PROGRESS] >= 1.0
+        lane, is_there = crowd.ways[i, whole[i, AT]], row[PROGRESS] >= 1.0
         for n in range(begin, count):
             is_there = is_there or entries[n, 0] == lane
         if not is_there:
@@ -521,17 +515,10 @@ def _boxes(
 
 
 @compiled
-def _begin_change(
-    lanes: LaneMap,
-    numbers: FloatArray,
-    whole: IntArray,
-    ways: IntArray,
-    i: int,
-    target: int,
-    states: FloatArray,
-) -> None:
+def _begin_change(crowd: Crowd, i: int, target: int) -> None:
     """Makes a vehicle change to a lane beside its own, from where on its way has to be planned anew."""
-    row, state, lane = numbers[i], states[i], ways[i, whole[i, AT]]
+    lanes, whole, ways = crowd.lanes, crowd.whole, crowd.ways
+    row, state, lane = crowd.numbers[i], crowd.states[i], ways[i, whole[i, AT]]
     s = across(lanes, lane, row[S], target)
     x, y, _, heading, _ = place_on(lanes, target, s)
     s += (state[0] - x) * math.cos(heading) + (state[1] - y) * math.sin(heading)
@@ -543,27 +530,24 @@ def _begin_change(
 
 
 @compiled
-def _decide(
-    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, present: int, i: int, states:
-    FloatArray,
-    entries: FloatArray, count: int, lights: IntArray, may_change: bool,
-) -> int:  # fmt: skip
+def _decide(crowd: Crowd, i: int, count: int, may_change: bool) -> int:
     """Decides the acceleration of a vehicle, and whether it begins to change lanes; returns the number of
     rows of ``entries``, to which its box in the new lane is added."""
+    lanes, numbers, whole = crowd.lanes, crowd.numbers, crowd.whole
     row, v = numbers[i], numbers[i, V]
-    lane = ways[i, whole[i, AT]]
-    wanted = _bends(lanes, numbers, whole, ways, i)
+    lane = crowd.ways[i, whole[i, AT]]
+    wanted = _bends(crowd, i)
     pull, brake, headway = row[PULL], row[BRAKE], row[HEADWAY]
     least = idm(v, wanted, math.inf, 0.0, pull, brake, headway)
-    a, fastest = _leaders(lanes, numbers, whole, ways, i, wanted, entries, count, -1, 0.0)
+    a, fastest = _leaders(crowd, i, wanted, count, -1, 0.0)
     least = min(least, a)
     if whole[i, OLD] >= 0:
         old = whole[i, OLD]
         offset = -across(lanes, lane, row[S], old)
-        a, also = _leaders(lanes, numbers, whole, ways, i, wanted, entries, count, old, offset)
+        a, also = _leaders(crowd, i, wanted, count, old, offset)
         least, fastest = min(least, a), min(fastest, also)
     alone = least
-    line = _to_stop(lanes, numbers, whole, ways, present, i, entries, count, lights)
+    line = _to_stop(crowd, i, count)
     if line < math.inf:
         least = min(least, idm(v, wanted, max(line + JAM - LINE, 0.1), 0.0, pull, brake, headway))
         if line > 0.0:
@@ -577,13 +561,13 @@ def _decide(
     if may_change and row[PROGRESS] >= 1.0 and lanes.junction[lane] < 0 and (v > SLOWEST_CHANGE or ends):
         best, side = (-math.inf, -1) if ends else (GAIN, -1)
         for each in range(2):
-            gain = _change(lanes, numbers, whole, ways, i, each, alone, wanted, entries, count, ends)
+            gain = _change(crowd, i, each, alone, wanted, count, ends)
             if gain > best:
                 best, side = gain, each
         if side >= 0:
             target = lanes.beside[lane, side]
-            _begin_change(lanes, numbers, whole, ways, i, target, states)
-            count = _add(entries, count, target, row[S], row[LENGTH], v, i)
+            _begin_change(crowd, i, target)
+            count = _add(crowd.entries, count, target, row[S], row[LENGTH], v, i)
     after = min(v + max(least, -HARDEST) * STEP, max(fastest, v - HARDEST * STEP))
     row[A_NEXT] = (max(after, 0.0) - v) / STEP
     return count
@@ -612,30 +596,20 @@ def _move(lanes: LaneMap, row: FloatArray, whole: IntArray, way: IntArray) -> No
 
 
 @compiled
-def step(
-    lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray, present: int, states: FloatArray,
-    bodies: FloatArray, lights: IntArray, entries: FloatArray, room: FloatArray, tick: int,
-) -> None:  # fmt: skip
+def step(crowd: Crowd, bodies: FloatArray, room: FloatArray, tick: int) -> None:
     """Moves everybody by STEP.
 
     Args:
-        lanes: The lanes.
-        numbers: Numbers of the vehicles, changed in place; row TESTED is the tested car.
-        whole: Whole numbers of the vehicles, changed in place.
-        ways: The lanes of each vehicle's way, changed in place where it changes lanes.
-        present: The number of rows in use.
-        states: Where the vehicles are, ``(present, 5)``, changed in place; that of the tested car is in row
-            TESTED.
+        crowd: Everybody; the state of the tested car is its present one.
         bodies: Others whom this step does not move: states, length and width, ``(m, 7)``.
-        lights: GREEN, YELLOW or RED for each lane.
-        entries: Room for the boxes in lanes: lane, first and last station, speed along it, and whose.
         room: Gets the metres at the start of each lane that are free.
         tick: The number of the step."""
-    count = _boxes(lanes, numbers, whole, ways, present, states, bodies, entries)
+    numbers, whole, states, entries = crowd.numbers, crowd.whole, crowd.states, crowd.entries
+    count = _boxes(crowd, bodies)
     if whole[TESTED, STATE] == DRIVES:
-        _reserve(lanes, numbers, whole, ways)
-    order = np.argsort(-numbers[:present, WAIT], kind="mergesort")
-    for at in range(present):
+        _reserve(crowd)
+    order = np.argsort(-numbers[:, WAIT], kind="mergesort")
+    for at in range(len(numbers)):
         i = order[at]
         if i == TESTED or whole[i, STATE] == ABSENT or whole[i, STATE] == GONE:
             continue
@@ -648,25 +622,26 @@ def step(
             numbers[i, A_NEXT] = max(-AFTER_CONTACT, -numbers[i, V] / STEP)
         else:
             turn = (tick + i) % EVERY == 0
-            count = _decide(lanes, numbers, whole, ways, present, i, states, entries, count, lights, turn)
+            count = _decide(crowd, i, count, turn)
     room[:] = math.inf
     for n in range(count):
         lane = int(entries[n, 0])
         room[lane] = min(room[lane], entries[n, 1])
-    for i in range(present):
+    for i in range(len(numbers)):
         if i != TESTED and (whole[i, STATE] == DRIVES or whole[i, STATE] == STANDS_HIT):
-            _move(lanes, numbers[i], whole[i], ways[i])
-    positions(lanes, numbers, whole, ways, present, states)
+            _move(crowd.lanes, numbers[i], whole[i], crowd.ways[i])
+    _locate(crowd)
 
 
 @compiled
-def _reserve(lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArray) -> None:
+def _reserve(crowd: Crowd) -> None:
     """Gives the tested car the grants for the ways through junctions that it cannot or need not stop
     before."""
-    k, ahead, before = _next_way(lanes, numbers, whole, ways, TESTED)
+    lanes, ways = crowd.lanes, crowd.ways
+    k, ahead, before = _next_way(crowd, TESTED)
     if k < 0:
         return
-    row = numbers[TESTED]
+    row = crowd.numbers[TESTED]
     line = ahead - row[LENGTH] / 2.0
     has_priority = True
     for c in range(lanes.conflict_of[ways[TESTED, k]], lanes.conflict_of[ways[TESTED, k] + 1]):
@@ -674,4 +649,4 @@ def _reserve(lanes: LaneMap, numbers: FloatArray, whole: IntArray, ways: IntArra
     top = lanes.limit[ways[TESTED, whole[TESTED, AT]]]
     soon = has_priority and row[V] > STANDING and time_over(row[V], max(line, 0.0), top, SPRINT) < SOON
     if before < 0 or line < 0.0 or line < row[V] ** 2 / (2.0 * AGAINST_MUST) or soon:
-        whole[TESTED, GRANTED] = k
+        crowd.whole[TESTED, GRANTED] = k

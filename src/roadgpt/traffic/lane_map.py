@@ -2,9 +2,9 @@
 beside them, where they meet, and which lanes a box touches."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,18 +82,13 @@ class LaneMap(NamedTuple):
     """x and y of the grid's corner, its columns and its rows."""
 
 
+@lru_cache(maxsize=8)
 def lane_map(
-    lanes: Lanes, limit: float, near: Iterable[Leg] | None = None
+    lanes: Lanes, limit: float, near: frozenset[Leg] | None = None
 ) -> tuple[LaneMap, tuple[Leg, ...]]:
     """Returns the driving lanes, and their ids in the order of the arrays. ``limit`` is the speed limit in
     m/s of lanes that have none; ``near`` names the lanes to be used, all others do not exist then."""
-    kept = None if near is None else frozenset(near)
-    return _made(lanes, limit, kept)
-
-
-@lru_cache(maxsize=8)
-def _made(lanes: Lanes, limit: float, kept: frozenset[Leg] | None) -> tuple[LaneMap, tuple[Leg, ...]]:
-    used = [each for each in lanes if each.kind == "driving" and (kept is None or each.id in kept)]
+    used = [each for each in lanes if each.kind == "driving" and (near is None or each.id in near)]
     number = {lane.id: n for n, lane in enumerate(used)}
     samples, stations, steps, usable, longest = [], [], [], [], []
     for lane in used:
@@ -107,13 +102,9 @@ def _made(lanes: Lanes, limit: float, kept: frozenset[Leg] | None) -> tuple[Lane
         longest.append(float(np.sqrt(8.0 * spare * (rows[:, PV] ** 2 / ACROSS)).min()))
     first = np.cumsum([0, *map(len, samples)])
     table = np.concatenate(samples)
-    onward, onward_of = _rows([[number[each] for each in lane.successors if each in number] for lane in used])
-    before, before_of = _rows(
-        [[number[each] for each in lane.predecessors if each in number] for lane in used]
-    )
-    met = [_conflicts(lanes, lane, number) for lane in used]
-    conflict_of = np.cumsum([0, *map(len, met)])
-    flat = [row for rows in met for row in rows]
+    onward, onward_of = _rows([[number[key] for key in lane.successors if key in number] for lane in used])
+    before, before_of = _rows([[number[key] for key in lane.predecessors if key in number] for lane in used])
+    flat, conflict_of = _rows([_conflicts(lanes, lane, number) for lane in used])
     cells, cell_of, grid = _grid(table, np.repeat(steps, np.diff(first)))
     return LaneMap(
         table,
@@ -126,18 +117,13 @@ def _made(lanes: Lanes, limit: float, kept: frozenset[Leg] | None) -> tuple[Lane
         np.array([lane.member.profile.lanes[lane.id.lane].speed_limit or limit for lane in used]),
         np.array([[_beside(lane, side, number) for side in ("left", "right")] for lane in used]),
         np.array([-1 if lane.member.junction is None else lane.member.junction for lane in used]),
-        onward,
+        np.array(onward, np.int64),
         onward_of,
-        before,
+        np.array(before, np.int64),
         before_of,
-        np.array([_stop(lane) for lane in used]),
+        np.array([lane.length if lane.stop is None else lane.stop for lane in used]),
         np.array([lane.control == "stop" for lane in used]),
-        np.array(
-            [
-                not lane.successors and any(each.successors for each in _all_beside(lanes, lane))
-                for lane in used
-            ]
-        ),
+        np.array([_ends(lanes, lane) for lane in used]),
         np.array([_begins(lanes, lane, number) for lane in used]),
         np.array(longest),
         np.array([_leaves_ring(lanes, lane) for lane in used]),
@@ -176,10 +162,6 @@ def _beside(lane: Lane, side: str, number: dict[Leg, int]) -> int:
     return number.get(other, -1) if may and other is not None and lane.member.junction is None else -1
 
 
-def _stop(lane: Lane) -> float:
-    return lane.length if lane.stop is None else lane.stop
-
-
 def _all_beside(lanes: Lanes, lane: Lane) -> list[Lane]:
     """Returns the lanes of the same direction beside a lane, to the left and to the right of it."""
     found = list[Lane]()
@@ -189,6 +171,10 @@ def _all_beside(lanes: Lanes, lane: Lane) -> list[Lane]:
             found.append(lanes[key])
             key = getattr(lanes[key], side)
     return found
+
+
+def _ends(lanes: Lanes, lane: Lane) -> bool:
+    return not lane.successors and any(each.successors for each in _all_beside(lanes, lane))
 
 
 def _begins(lanes: Lanes, lane: Lane, number: dict[Leg, int]) -> bool:
@@ -220,8 +206,9 @@ def _leaves_ring(lanes: Lanes, lane: Lane) -> bool:
     return ring is not None and any(each.road in ring.ring for each in lane.predecessors)
 
 
-def _rows(rows: Sequence[Sequence[int]]) -> tuple[IntArray, IntArray]:
-    return np.array([each for row in rows for each in row], np.int64), np.cumsum([0, *map(len, rows)])
+def _rows(rows: Sequence[Sequence[Any]]) -> tuple[list[Any], IntArray]:
+    """Returns what is in some rows, one row after another, and where each row begins there."""
+    return [each for row in rows for each in row], np.cumsum([0, *map(len, rows)])
 
 
 def _grid(table: FloatArray, step: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
@@ -231,33 +218,19 @@ def _grid(table: FloatArray, step: FloatArray) -> tuple[IntArray, IntArray, Floa
     high = np.floor((table[:, [PX, PY]] + reach[:, None]) / CELL).astype(np.int64)
     corner = low.min(0)
     columns, rows = (int(each) for each in high.max(0) - corner + 1)
-    low, high = low - corner, high - corner + 1
-    pairs = np.empty((int(np.prod(high - low, axis=1).sum()), 2), np.int64)
-    found = pairs[: _reached(table, step, low, high, corner, columns, pairs)]
-    found = found[np.lexsort((found[:, 1], found[:, 0]))]
-    starts = np.searchsorted(found[:, 0], np.arange(columns * rows + 1))
+    wide, tall = (high - low + 1).T
+    sample = np.repeat(np.arange(len(table)), wide * tall)
+    nth = np.arange(len(sample)) - (np.cumsum(wide * tall) - wide * tall)[sample]
+    cell = low[sample] + np.column_stack([nth // tall[sample], nth % tall[sample]])
+    dx, dy = ((cell + 0.5) * CELL - table[sample][:, [PX, PY]]).T
+    c, s = table[sample][:, [PC, PS]].T
+    is_reached = np.abs(dy * c - dx * s) <= table[sample, PW] + 0.71 * CELL
+    is_reached &= np.abs(dx * c + dy * s) <= step[sample] + 0.71 * CELL
+    sample, (column, row) = sample[is_reached], (cell[is_reached] - corner).T
+    order = np.argsort(row * columns + column, kind="stable")
+    starts = np.searchsorted((row * columns + column)[order], np.arange(columns * rows + 1))
     grid = np.array([corner[0] * CELL, corner[1] * CELL, columns, rows], float)
-    return np.ascontiguousarray(found[:, 1]), starts, grid
-
-
-@compiled
-def _reached(
-    table: FloatArray, step: FloatArray, low: IntArray, high: IntArray, corner: IntArray, columns: int,
-    pairs: IntArray,
-) -> int:  # fmt: skip
-    """Writes pairs of a cell and a sample whose slab may reach into it; returns their number."""
-    count = 0
-    for n in range(len(table)):
-        c, s = math.cos(table[n, PH]), math.sin(table[n, PH])
-        for column in range(low[n, 0], high[n, 0]):
-            for row in range(low[n, 1], high[n, 1]):
-                dx = (column + corner[0] + 0.5) * CELL - table[n, PX]
-                dy = (row + corner[1] + 0.5) * CELL - table[n, PY]
-                is_beside = abs(dy * c - dx * s) <= table[n, PW] + 0.71 * CELL
-                if is_beside and abs(dx * c + dy * s) <= step[n] + 0.71 * CELL:
-                    pairs[count, 0], pairs[count, 1] = row * columns + column, n
-                    count += 1
-    return count
+    return sample[order], starts, grid
 
 
 @compiled
@@ -293,9 +266,8 @@ def across(lanes: LaneMap, lane: int, s: float, other: int) -> float:
 
 @compiled
 def touched(
-    lanes: LaneMap, x: float, y: float, heading: float, length: float, width: float, speed: float, body:
-    float,
-    entries: FloatArray, count: int,
+    lanes: LaneMap, x: float, y: float, heading: float, length: float, width: float, speed: float,
+    body: float, entries: FloatArray, count: int,
 ) -> int:  # fmt: skip
     """Adds a row to ``entries`` for each lane that a box touches: the lane, the first and the last station
     that the box touches, its speed along the lane, and the number of the body. Returns the number of rows

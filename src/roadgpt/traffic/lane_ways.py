@@ -18,7 +18,7 @@ from roadgpt.network.network import Leg
 from roadgpt.traffic.actor import FloatArray
 from roadgpt.traffic.lane_map import LEAST
 from roadgpt.traffic.lights import Lights
-from roadgpt.traffic.way import SPACING, Way
+from roadgpt.traffic.way import SPACING, Way, with_headings
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -118,12 +118,6 @@ class Around(NamedTuple):
             if is_there.any()
             else None
         )
-
-
-def with_headings(xyz: FloatArray) -> FloatArray:
-    """Returns points ``(n, 3)`` with the direction from those before to those behind."""
-    dx, dy = np.gradient(xyz[:, :2], axis=0).T
-    return np.column_stack([xyz, np.unwrap(np.arctan2(dy, dx))])
 
 
 def along_lanes(role: Role, near: float, road: "Road", world: "World") -> Way:

@@ -6,7 +6,6 @@ then yellow for YELLOW_FOR and red for everybody for CLEARING. Source: FHWA, Tra
 of a larger road."""
 
 import math
-from collections.abc import Mapping
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -14,9 +13,8 @@ import numpy as np
 
 from roadgpt.geometry import wrap_angle
 from roadgpt.network import network_of
-from roadgpt.network.network import Junction, Leg, Network, RoadEnd
+from roadgpt.network.network import Junction, Network, RoadEnd
 from roadgpt.traffic.following import GREEN, RED, YELLOW
-from roadgpt.traffic.lane_map import IntArray
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -79,10 +77,6 @@ class Lights:
         changes = [n * PHASE + each for n in range(count) for each in (0, GREEN_FOR, GREEN_FOR + YELLOW_FOR)]
         times = sorted({0.0, PHASE * count, *((each - begin) % (PHASE * count) for each in changes)})
         return [(b - a, {arm: self.shown(arm, (a + b) / 2) for arm in arms}) for a, b in pairwise(times)]
-
-    def of_lanes(self, ids: Mapping[Leg, RoadEnd], time: float) -> IntArray:
-        """Returns what traffic in lanes sees; ``ids`` has the end of the road to which each lane leads."""
-        return np.array([self.shown(end, time) for end in ids.values()])
 
 
 def lights_of(road: "Road", world: "World", seed: int) -> Lights:

@@ -17,8 +17,8 @@ from roadgpt.network.markings import CROSSWALK
 from roadgpt.road.road import GOAL
 from roadgpt.traffic.actor import SIZES, FloatArray, corners
 from roadgpt.traffic.lane_map import LEAST
-from roadgpt.traffic.lane_ways import MERGED, along_lanes, with_headings
-from roadgpt.traffic.way import SPACING, Way
+from roadgpt.traffic.lane_ways import MERGED, along_lanes
+from roadgpt.traffic.way import SPACING, Way, with_headings
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World

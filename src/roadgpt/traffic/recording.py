@@ -165,6 +165,15 @@ def _track(rows: FloatArray, starts: float | None = None, ends: float | None = N
     return Track(rows, float(first), float(last))
 
 
+def _value(text: str | None) -> float:
+    """Returns the number that a text is; NaN if it is none, or too large."""
+    try:
+        value = float(text or "")
+    except ValueError:
+        return math.nan
+    return value if abs(value) <= FARTHEST else math.nan
+
+
 def _size_of(values: Sequence[float], who: str) -> Size:
     if not all(0 < value <= LARGEST for value in values):
         raise UsageError(f"the box of {who} is {' x '.join(f'{v:g}' for v in values)} m; correct it")
@@ -219,11 +228,7 @@ def _actor_of(row: Mapping[str, str], number: int, name: str) -> Actor:
 
 
 def _cell(row: Mapping[str, str], column: str, number: int) -> float:
-    try:
-        value = float(row.get(column, ""))
-    except ValueError:
-        value = math.nan
-    if not abs(value) <= FARTHEST:
+    if math.isnan(value := _value(row.get(column))):
         raise UsageError(f"row {number}: {column} is '{row.get(column, '')[:40]}', which is no usable number")
     return value
 
@@ -324,7 +329,7 @@ class _Story:
                 self.paths[name].append((follow, time))
             elif kind.tag == "TeleportAction" and time == 0.0 and name not in self.places:
                 self.places[name] = kind
-            elif speed is None or time != 0.0 or not (name in self.paths or _is_zero(speed)):
+            elif speed is None or time != 0.0 or not (name in self.paths or _value(speed.get("value")) == 0):
                 # the first speed of who follows a trajectory is that of the trajectory
                 inner = [each.tag for each in kind] if kind.tag.endswith(("lAction", "gAction")) else []
                 self.unused.add((name, (inner or [kind.tag])[0]))
@@ -340,13 +345,6 @@ class _Story:
                 self.elsewhere.add(kind.tag)
 
 
-def _is_zero(speed: ET.Element) -> bool:
-    try:
-        return float(speed.get("value", "")) == 0.0
-    except ValueError:
-        return False
-
-
 def _time_of(trigger: ET.Element | None) -> float | None:
     """Returns the time in seconds at which a trigger fires; None if it depends on something else than the
     time."""
@@ -355,11 +353,8 @@ def _time_of(trigger: ET.Element | None) -> float | None:
         time = condition.find("ByValueCondition/SimulationTimeCondition")
         if time is None or time.get("rule", "greaterThan").startswith(("less", "notEqual")):
             return None
-        try:
-            times.append(float(time.get("value", "")) + float(condition.get("delay", "0")))
-        except ValueError:
-            return None
-    return max(times)
+        times.append(_value(time.get("value")) + _value(condition.get("delay", "0")))
+    return None if math.isnan(sum(times)) else max(times)
 
 
 def _replayed(entity: ET.Element, name: str, story: _Story) -> tuple[Actor, Track]:
@@ -375,14 +370,9 @@ def _replayed(entity: ET.Element, name: str, story: _Story) -> tuple[Actor, Trac
     if size is None or middle is None:
         raise _UnknownError("without a BoundingBox")
     box = _size_of([_number(size, each) for each in SIZE_COLUMNS], name)
-    said = body.get("name", "")
-    kind = next((each for each in kinds if each == said), kinds[0])
-    if (
-        category == "pedestrian"
-        and said not in kinds
-        and box.height < (SIZES["adult"].height + SIZES["child"].height) / 2
-    ):
-        kind = "child"
+    said = [each for each in kinds if each == body.get("name")]
+    middling = (SIZES["adult"].height + SIZES["child"].height) / 2
+    kind = said[0] if said else kinds[category == "pedestrian" and box.height < middling]
     rows = np.array([*_vertices(name, story)])
     is_moving = bool(len(rows))
     if unused := sorted(what for who, what in story.unused if who == name and not is_moving):
@@ -404,15 +394,12 @@ def _replayed(entity: ET.Element, name: str, story: _Story) -> tuple[Actor, Trac
 
 def _number(element: ET.Element, name: str, usual: float | None = None) -> float:
     text = element.get(name)
-    try:
-        if text is None and usual is not None:
-            return usual
-        if abs(value := float(text or "")) <= FARTHEST:
-            return value
-    except ValueError:
-        pass
-    what = "a parameter" if str(text).startswith("$") else "no usable number"
-    raise _UnknownError(f"{name} of its {element.tag} is {what}")
+    if text is None and usual is not None:
+        return usual
+    if math.isnan(value := _value(text)):
+        what = "a parameter" if str(text).startswith("$") else "no usable number"
+        raise _UnknownError(f"{name} of its {element.tag} is {what}")
+    return value
 
 
 def _place(element: ET.Element) -> tuple[float, ...]:

@@ -29,8 +29,8 @@ class Stage(NamedTuple):
 
 
 class Mover(Protocol):
-    """Moves some of the others. States are arrays ``(actors, 5)`` as in Tracks, in the order of ``actors``,
-    and NaN while an actor is not there."""
+    """A plug-in (``movers/``), made with a Stage, that moves some of the others. States are arrays
+    ``(actors, 5)`` as in Tracks, in the order of ``actors``, and NaN while an actor is not there."""
 
     actors: list[Actor]
     """Its own actors; the list may grow at its end."""

@@ -34,9 +34,7 @@ class Way:
     def along(cls, road: "Road", world: "World") -> "Way":
         """Returns the middle of the lane that the tested car is to follow."""
         s = np.linspace(0.0, road.length, max(int(road.length / SPACING), 1) + 1)
-        xyz = road.at(s, world.profile_of(road).middle(s))
-        heading = np.unwrap(np.arctan2(*np.gradient(xyz[:, :2], axis=0).T[::-1]))
-        return cls(np.column_stack([xyz, heading]), road_stations=s)
+        return cls(with_headings(road.at(s, world.profile_of(road).middle(s))), road_stations=s)
 
     @cached_property
     def stations(self) -> FloatArray:
@@ -87,3 +85,9 @@ class Way:
         *_, bend, along, against = self._at(s)
         stretch = max(1.0 - bend * t, LEAST_STRETCH) if 0.0 < s < self.length else 1.0
         return stretch, math.sqrt((along if forward > 0 else against) * stretch)
+
+
+def with_headings(xyz: FloatArray) -> FloatArray:
+    """Returns points ``(n, 3)`` with the direction from those before to those behind."""
+    dx, dy = np.gradient(xyz[:, :2], axis=0).T
+    return np.column_stack([xyz, np.unwrap(np.arctan2(dy, dx))])

@@ -46,10 +46,7 @@ KEPT = 4  # lanes behind a vehicle that are remembered, and ahead of it that are
 NEVER = 1e6  # s
 CLEAR = 8.0  # m, from the middle of a vehicle at the start to the place where it stops
 LEAST_SPEED = 4.0  # m/s, with which a vehicle comes onto the map at least
-AHEAD, BEHIND = (
-    30.0,
-    15.0,
-)  # m before and behind the tested car where nobody is at the start, and 2 s of its way
+AHEAD, BEHIND = 30.0, 15.0  # m before and behind the tested car where nobody is at first, and 2 s of its way
 
 
 class IdmMover:
@@ -67,7 +64,7 @@ class IdmMover:
         lanes = lanes_of(network)
         self.lanes, self.ids = lane_map(lanes, stage.world.limits.speed_limit, _near(lanes, road))
         self.lights = stage.lights or Lights(network, stage.seed)
-        self._ends = {key: RoadEnd(key.road, "end" if lanes[key].is_along else "start") for key in self.ids}
+        self._ends = [RoadEnd(key.road, "end" if lanes[key].is_along else "start") for key in self.ids]
         self._number = {key: n for n, key in enumerate(self.ids)}
         self._path = _path(road, legs_of(road, stage.world), self._number)
         self._rng = np.random.default_rng([self._seed, 0])
@@ -123,10 +120,13 @@ class IdmMover:
     def move(self, time: float, car: "TestedCar | None", bodies: FloatArray) -> FloatArray:
         """Returns the states of all actors, shape ``(actors, 5)``, STEP after ``time``."""
         self._see(car)
-        f.step(
-            self.lanes, self._numbers, self._whole, self._ways, self._present, self._states, bodies,
-            self.lights.of_lanes(self._ends, time), self._entries, self._room, self._tick,
+        lights = np.array([self.lights.shown(end, time) for end in self._ends])
+        n = self._present
+        crowd = f.Crowd(
+            self.lanes, self._numbers[:n], self._whole[:n], self._ways[:n], self._states[:n], self._entries,
+            lights,
         )  # fmt: skip
+        f.step(crowd, bodies, self._room, self._tick)
         self._tick += 1
         if self.comes_in:
             self._let_in()

@@ -17,20 +17,9 @@ from roadgpt.check.measures import measure
 from roadgpt.errors import UsageError
 from roadgpt.plural import plural
 from roadgpt.road.road import START
-from roadgpt.traffic.acting import (
-    LAST,
-    LATERAL,
-    ROLL,
-    TURNING,
-    Act,
-    Car,
-    Deed,
-    Meeting,
-    reach,
-    starts,
-    time_over,
-)
+from roadgpt.traffic.acting import LAST, LATERAL, ROLL, TURNING, Act, Car, Deed, Meeting, reach, starts
 from roadgpt.traffic.actor import SIZES, Actor, FloatArray, TestedCar, corners
+from roadgpt.traffic.following import time_over
 from roadgpt.traffic.places import offset_of, parked_rows, way_of
 from roadgpt.traffic.way import Way
 
@@ -344,7 +333,7 @@ class _Placing:
             way = self._way_from(role, near)
             if self.crosses and way.meets and "station" not in self.n and not role.at:
                 path = way.meets[0] + self.car.width / 2
-                lasts = 1.0 + time_over(path, *starts(self.kind, cue, self.cruise))
+                lasts = 1.0 + time_over(0.0, path, *starts(self.kind, cue, self.cruise))
                 later = self.car.s + self.half + self.car.v * lasts
                 way = self._way_from(role, later) if later > near else way
             self.ways[self.number] = way
