@@ -205,7 +205,7 @@ class Act:
         if self.held:
             ahead, faster = self.held
             wanted = car.v + faster + (ahead + faster * time - (self.along - car.s)) / CATCH_UP
-            self.goal, self.pull = min(max(wanted, 0.0), FAST), MATCHED
+            self.goal, self.pull = min(max(wanted, self.cruise / 2), FAST), MATCHED
         elif self.matches:
             eta, self.goal, self.pull = self._eta(car), self.cruise, MATCHED
             self.matches = eta > LAST

@@ -257,7 +257,7 @@ def _comes_before(crowd: Crowd, i: int, j: int, other: int, first: float, leaves
             return False
     arrives = (line + first) / max(v, 3.0)
     if j == TESTED and v > STANDING:
-        arrives = time_over(v, line + first, lanes.limit[other], SPRINT)
+        arrives = time_over(v, line + first, crowd.lanes.limit[other], SPRINT)
     return bool(arrives < leaves + MARGIN)
 
 
@@ -646,7 +646,7 @@ def _reserve(crowd: Crowd) -> None:
     has_priority = True
     for c in range(lanes.conflict_of[ways[TESTED, k]], lanes.conflict_of[ways[TESTED, k] + 1]):
         has_priority = has_priority and lanes.conflict[c, 1] == 0
-    top = lanes.limit[ways[TESTED, whole[TESTED, AT]]]
+    top = lanes.limit[ways[TESTED, crowd.whole[TESTED, AT]]]
     soon = has_priority and row[V] > STANDING and time_over(row[V], max(line, 0.0), top, SPRINT) < SOON
     if before < 0 or line < 0.0 or line < row[V] ** 2 / (2.0 * AGAINST_MUST) or soon:
         crowd.whole[TESTED, GRANTED] = k
