@@ -279,8 +279,11 @@ def test_the_tested_car_has_green_where_somebody_runs_the_red_light():
         assert sum(each == RED for each in shown.values()) == 2
     assert way(plan, "car junction opposite: run_light") is None
     for text in ("car junction left: cross", "car junction right v=30"):
-        with pytest.raises(UsageError, match=r"from the (left|right).*; on red write run_light$"):
-            way_of(role(text), 30.0, road, world)
+        assert way_of(role(text), 30.0, road, world).meets
+        traffic = begin(road, world.changed(scene=f"ego v=36; {text}"), 0)
+        shown = {arm.end: traffic.lights.shown(arm.end, arrives) for arm in passage.entered.arms}
+        assert shown[passage.arrival] == shown[passage.departure] == RED
+        assert sum(each == GREEN for each in shown.values()) == 2  # those from the sides
 
 
 def test_who_drives_along_with_the_tested_car_has_green_too():

@@ -88,7 +88,8 @@ def _lasts(role: Role, speed: float) -> float:
     meets = gap / closing if closing > 1.0 and role.where in ("ahead", "lane", "far", "oncoming") else 0.0
     if role.where in ACROSS and own > 0:
         rates = [abs(_most(each.accel)) for each in role.actions if each.accel]
-        meets = (_most(role.away) or VERGE) / own + sum(own / 2 / rate for rate in rates if rate)
+        walks = (_most(role.away) or VERGE) / own + sum(own / 2 / rate for rate in rates if rate)
+        meets = max(ROLLS + 2.0, walks + 1.0)  # they are never there sooner
     lasts, now = max((_most(each.time) for each in role.actions), default=0.0) or ROLLS, own
     for action in role.actions:
         seconds, now = _takes(action, now)

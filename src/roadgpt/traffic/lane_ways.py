@@ -17,7 +17,7 @@ from roadgpt.network.lanes import HEADROOM, STRAIGHT_AHEAD, Lanes, lanes_of
 from roadgpt.network.network import Leg
 from roadgpt.traffic.actor import FloatArray
 from roadgpt.traffic.lane_map import LEAST
-from roadgpt.traffic.lights import Lights
+from roadgpt.traffic.lights import Lights, comes_from_side
 from roadgpt.traffic.way import SPACING, Way, with_headings
 
 if TYPE_CHECKING:
@@ -137,13 +137,10 @@ def along_lanes(role: Role, near: float, road: "Road", world: "World") -> Way:
         if way is not None and way.meets is not None and way.meets[1] >= near:
             return way
     what = _turn(role)
-    more = ""
-    if what != "run_light" and any(each.control == "lights" for each in passages):
-        more = "; on red write run_light"
     of = f"the {role.side}{' side' * (role.side == 'opposite')}" if role.side else "another side"
     wanted = {
         "junction": f"junction after {near:.0f} m with a road from {of}, from which somebody who "
-        f"{DOINGS[what].said} meets the tested car{more}",
+        f"{DOINGS[what].said} meets the tested car",
         "roundabout": f"roundabout after {near:.0f} m",
         "ramp": f"ramp that joins its lane after {near:.0f} m; write for example merge main",
         "turn_off": f"junction after {near:.0f} m where somebody {role.where} can turn off",
@@ -171,8 +168,9 @@ def _through_junction(role: Role, around: Around) -> Iterator[Way | None]:
         for end in passage.arms[1:]:  # the first one is the road of arrival
             turn = float(wrap_angle(directions[end] - directions[passage.arrival] - math.pi))
             side = "opposite" if abs(turn) <= OPPOSITE else "left" if turn > 0 else "right"
-            has_red = end in phases and phases[end] != own  # where the tested car has green
-            if side in sides and has_red == (what == "run_light"):
+            is_across = end in phases and phases[end] != own
+            is_fit = end not in phases or is_across == comes_from_side(role)
+            if side in sides and is_fit and (is_across or what != "run_light"):
                 lanes = [Leg(end.road, each) for each in network.lanes_into(end)]
                 arms.append((sides.index(side), abs(turn), lanes))
         for _, _, lanes in sorted(arms):

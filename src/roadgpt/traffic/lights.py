@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from roadgpt.brief.scene import Role
 from roadgpt.geometry import wrap_angle
 from roadgpt.network import network_of
 from roadgpt.network.network import Junction, Network, RoadEnd
@@ -79,13 +80,23 @@ class Lights:
         return [(b - a, {arm: self.shown(arm, (a + b) / 2) for arm in arms}) for a, b in pairwise(times)]
 
 
+def comes_from_side(role: Role) -> bool:
+    """Returns whether somebody comes to a junction on a road across that of the tested car."""
+    is_across = any(each.what == "turn_across" for each in role.actions)
+    return role.where == "junction" and role.side != "opposite" and not is_across
+
+
 def lights_of(road: "Road", world: "World", seed: int) -> Lights:
     """Returns the lights that run in a drive. If the scene has actors, the tested car has green wherever it
-    comes at its first speed: then those who drive along with it, or towards it, have green too, and who comes
-    from the side runs a red light."""
-    lights = Lights(network_of(road, world), seed)
-    if world.scene.actors:
-        for passage in road.passages:
-            if passage.control == "lights":
-                lights.show_green(passage.entered, passage.arrival, passage.start / world.first_speed)
+    comes at its first speed, and so has who drives along with it or towards it. If somebody comes from the
+    side who does not run the red light, that one has green, and the tested car red."""
+    lights, actors = Lights(network_of(road, world), seed), world.scene.actors
+    crosses = [each for each in actors if comes_from_side(each)]
+    runs = any(action.what == "run_light" for each in crosses for action in each.actions)
+    for passage in road.passages if actors else ():
+        if passage.control == "lights":
+            own = lights.phases[passage.arrival]
+            others = [each for each in passage.arms if lights.phases.get(each, own) != own]
+            end = others[0] if crosses and others and not runs else passage.arrival
+            lights.show_green(passage.entered, end, passage.start / world.first_speed)
     return lights
