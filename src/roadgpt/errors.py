@@ -23,6 +23,10 @@ class BriefError(UsageError):
     """A description is meaningless, contradicts itself or asks for the impossible."""
 
 
+class SceneError(UsageError):
+    """Something of a scene cannot be on the road that was built."""
+
+
 class EditError(UsageError):
     """A change request cannot be understood, names something that is not on the road, or cannot be met."""
 

@@ -29,6 +29,7 @@ driver = "pure_pursuit"
 simulator = "beamng"
 keep_driving = true
 tracks = "/others.csv"
+scenario = "ncap:CCRs"
 geometry = "spline"
 rules = "sbft"
 axes = "thesis"

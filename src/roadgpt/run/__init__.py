@@ -27,7 +27,7 @@ from roadgpt.design.room import world_for
 from roadgpt.drive import Drive, refuse_ignored, simulate
 from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.loading import require_permission
-from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError, UsageError
+from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SceneError, SimulatorError
 from roadgpt.network import made_from, refuse_without_route
 from roadgpt.road import Design, Geometry, Road, World, in_short_segments
 from roadgpt.run.folder import Draw, read_run, seed_in, write_run
@@ -245,7 +245,7 @@ def _driven(run: Run, despite_findings: bool = False) -> Run:
         run = replace(run, drive=drive, verdict=verdict)
     except PartError:
         raise
-    except UsageError as error:  # the scene cannot be on this road
+    except SceneError as error:
         run = replace(run, outcome="INVALID", description=f"{REFUSED}{error}")
     except Exception as error:  # whatever a driver or a simulator raises costs this road, not the campaign
         said = str(error) if isinstance(error, RoadGPTError) else f"the simulation failed: {error!r}"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from roadgpt.brief.scene import DOINGS, Role, What
-from roadgpt.errors import UsageError
+from roadgpt.errors import SceneError
 from roadgpt.geometry import wrap_angle
 from roadgpt.network import Passage, Route, is_route
 from roadgpt.network.lane_along import LONGEST, SHARE
@@ -145,7 +145,7 @@ def along_lanes(role: Role, near: float, road: "Road", world: "World") -> Way:
         "ramp": f"ramp that joins its lane after {near:.0f} m; write for example merge main",
         "turn_off": f"junction after {near:.0f} m where somebody {role.where} can turn off",
     }
-    raise UsageError(f"the route passes no {wanted[place]}")
+    raise SceneError(f"the route passes no {wanted[place]}")
 
 
 def _turn(role: Role) -> What:

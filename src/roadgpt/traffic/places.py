@@ -10,7 +10,7 @@ import numpy as np
 from roadgpt.brief.amount import span
 from roadgpt.brief.junctions import Side
 from roadgpt.brief.scene import ActorKind, Role, Scene, Where
-from roadgpt.errors import UsageError
+from roadgpt.errors import SceneError
 from roadgpt.network import is_route, network_of
 from roadgpt.network.lanes import lanes_of
 from roadgpt.network.markings import CROSSWALK
@@ -45,7 +45,7 @@ def offset_of(where: Where, side: Side | None, s: float, road: "Road", world: "W
 
     Without a side, "lane" is on the side of the centre line if there is one, and the others are on the outer
     side. "far" is beside the road where there is no such lane. Within junctions, the offset changes evenly
-    from that before to that behind it. Raises UsageError if there is no such place."""
+    from that before to that behind it. Raises SceneError if there is no such place."""
     for passage in road.passages:
         if passage.start < s < passage.end and where in ("lane", "far", "oncoming"):
             ends = [passage.start - SPACING, passage.end + SPACING]
@@ -62,7 +62,7 @@ def offset_of(where: Where, side: Side | None, s: float, road: "Road", world: "W
         if where != "far":
             lacks = "oncoming lane" if where == "oncoming" else "second lane of the same direction"
             on = f" on the {side}" if side else ""
-            raise UsageError(f"the road has no {lacks}{on} at {s:.0f} m; give it one, or another place")
+            raise SceneError(f"the road has no {lacks}{on} at {s:.0f} m; give it one, or another place")
     side = side or outer
     around = np.clip([s - ALONG, s, s + ALONG], 0.0, road.length)
     edges = getattr(profile.edges(around), side) - profile.middle(around)
@@ -95,7 +95,7 @@ def _lanes_beside(s: float, road: "Road", world: "World", width: float) -> dict[
 def way_of(role: Role, near: float, road: "Road", world: "World") -> Way:
     """Returns the way of somebody who crosses the tested car's path, comes to it along other lanes, or turns
     off. ``meets`` is where, at station ``near`` of the tested car's road or later. The numbers of ``role``
-    are no ranges. Raises UsageError if the road has no such place."""
+    are no ranges. Raises SceneError if the road has no such place."""
     turns_off = "turn_off" in (each.what for each in role.actions)
     if turns_off or role.where in ("junction", "roundabout", "ramp", "oncoming"):
         return along_lanes(role, near, road, world)
@@ -104,7 +104,7 @@ def way_of(role: Role, near: float, road: "Road", world: "World") -> Way:
         if passage.start - BEFORE < s < passage.end + BEHIND:
             s = passage.end + BEHIND
     if near > road.length - GOAL:
-        raise UsageError(f"the road ends at {road.length:.0f} m, before anybody can cross it; make it longer")
+        raise SceneError(f"the road ends at {road.length:.0f} m, before anybody can cross it; make it longer")
     return _across(role, s if s <= road.length - GOAL else near, road, world)
 
 
@@ -115,7 +115,7 @@ def _crosswalk(near: float, road: "Road") -> float:
         for end, s in ((passage.arrival, passage.start - away), (passage.departure, passage.end + away)):
             if end in crossed and s >= near:
                 return float(s)
-    raise UsageError(f"the route passes no crosswalk after {near:.0f} m; write crosswalk behind a junction")
+    raise SceneError(f"the route passes no crosswalk after {near:.0f} m; write crosswalk behind a junction")
 
 
 def _across(role: Role, s: float, road: "Road", world: "World") -> Way:

@@ -14,7 +14,7 @@ from roadgpt.brief.amount import Frozen, exactly
 from roadgpt.brief.junctions import Side
 from roadgpt.brief.scene import ALONG, CUES, DOINGS, MOVING, NUMBERS, Action, Mark, Role, What, Where
 from roadgpt.check.measures import measure
-from roadgpt.errors import UsageError
+from roadgpt.errors import SceneError
 from roadgpt.plural import plural
 from roadgpt.road.road import START
 from roadgpt.traffic.acting import LAST, LATERAL, ROLL, TURNING, Act, Car, Deed, Meeting, reach, starts
@@ -67,7 +67,7 @@ class Script:
 
     def __init__(self, stage: "Stage") -> None:
         """Draws the numbers of the scene and places everybody as seen from where the tested car starts.
-        Raises UsageError if something of the scene cannot be on this road."""
+        Raises SceneError if something of the scene cannot be on this road."""
         self._road, self._world = stage.road, stage.world
         self._way = Way.along(stage.road, stage.world)
         self._cast: list[tuple[int, int, Role]] = []
@@ -175,7 +175,7 @@ class Script:
             ]
         at = mark.number - 1 if mark.number > 0 else len(spans) + mark.number
         if not 0 <= at < len(spans):
-            raise UsageError(
+            raise SceneError(
                 f"the scene names {mark.of} {mark.number}, but the road has "
                 f"{plural(len(spans), str(mark.of)) if spans else f'no {mark.of}'}; name another place"
             )
@@ -252,7 +252,7 @@ class _Placing:
         return self.limit if self.where == "oncoming" else min(self.car.v, self.limit) or self.limit
 
     def act(self, events: dict[tuple[str, ...], float], name: tuple[str, ...] | None) -> Act:
-        """Makes the act; raises UsageError if it cannot be on this road."""
+        """Makes the act; raises SceneError if it cannot be on this road."""
         v = 0.0 if self.stands or self.n.get("speed") == 0 else self.cruise
         way, meeting, held, shift, t = self.script._way, None, None, 0.0, 0.0
         if self.is_along:
@@ -286,32 +286,32 @@ class _Placing:
 
     def _check(self, act: Act) -> None:
         if self.is_along and self.forward < 0 and act.s < 0:
-            raise UsageError(f"{self._one()} drives away before it is on the road; give another place")
+            raise SceneError(f"{self._one()} drives away before it is on the road; give another place")
         if act.v == 0 and not act.waits and act.state() is None:
-            raise UsageError(
+            raise SceneError(
                 f"{self._one()} would stand at {act.along:.0f} m, but the road is {self.road.length:.0f} m "
                 "long; make the road longer, or give another place"
             )
         if act.held and act.along + ROLL * act.v < act.size.length / 2:
-            raise UsageError(
+            raise SceneError(
                 f"{self._one()} would have to begin its action before the begin of the road; give another "
                 "gap, or another speed"
             )
         first = self.deeds[0] if self.deeds else None
         if act.waits and first and act.wait(first, 0.0, self.car) < 0:
-            raise UsageError(
+            raise SceneError(
                 f"{self._one()} cannot be where it meets the tested car in time; give another place, or more "
                 "speed"
             )
         waits = first.event if first else None
         if act.held and first and not waits and act.wait(first, 0.0, self.car) == math.inf:
-            raise UsageError(f"{self._one()} never comes to where it is to act; give another gap or speed")
+            raise SceneError(f"{self._one()} never comes to where it is to act; give another gap or speed")
         moves = act.cruise > 0
         for deed in self.deeds:
             starts_to_move = deed.what in ("speed", "overtake", "pull_out")
             moves = moves or starts_to_move or max(deed.n.get("to", 0.0), deed.n.get("accel", 0.0)) > 0
             if deed.what in LATERAL and not moves:
-                raise UsageError(
+                raise SceneError(
                     f"{self._one()} stands, so it never {DOINGS[deed.what].said}; give it a speed, or 'accel'"
                 )
             if deed.what in LATERAL and deed.what != "merge":
@@ -458,7 +458,7 @@ class _Placing:
         station = self.script._road_station(min(max(s, 0.0), self.script._way.length))
         try:
             return offset_of(where, side, station, self.road, self.world, self.size.width)
-        except UsageError:
+        except SceneError:
             is_kerb = side == ("left" if self.kerb > 0 else "right")
             if where != "lane" or is_kerb or self.first not in ("cut_in", "overtake"):
                 raise
