@@ -15,7 +15,7 @@ from roadgpt.drive.view import LightAhead, Other, Others
 from roadgpt.network.lanes import HEADROOM
 from roadgpt.traffic import STEP, Actor, TestedCar, Traffic
 from roadgpt.traffic.actor import bodies
-from roadgpt.traffic.boxes import touch
+from roadgpt.traffic.boxes import part_inside, touch
 
 if TYPE_CHECKING:
     from roadgpt.drive.drive_monitor import DriveMonitor
@@ -72,17 +72,10 @@ def _hides(
     """Returns whether box ``m`` lies between the eye and a point."""
     c, s = math.cos(states[m, 3]), math.sin(states[m, 3])
     dx, dy, there_x, there_y = eye[0] - states[m, 0], eye[1] - states[m, 1], x - eye[0], y - eye[1]
-    low, high = 0.0, 1.0
-    for axis in range(2):
-        here = dx * c + dy * s if axis == 0 else dy * c - dx * s
-        slope = there_x * c + there_y * s if axis == 0 else there_y * c - there_x * s
-        room = sizes[m, axis] / 2.0
-        if abs(slope) < 1e-9:
-            if abs(here) > room:
-                return False
-        else:
-            one, two = (-room - here) / slope, (room - here) / slope
-            low, high = max(low, min(one, two)), min(high, max(one, two))
+    low, high = part_inside(
+        dx * c + dy * s, dy * c - dx * s, there_x * c + there_y * s, there_y * c - there_x * s,
+        sizes[m, 0], sizes[m, 1], 0.0, 1.0,
+    )  # fmt: skip
     one, two = eye[2] + low * (z - eye[2]), eye[2] + high * (z - eye[2])
     return low < high and min(one, two) < states[m, 2] + sizes[m, 2] and max(one, two) > states[m, 2]
 

@@ -9,7 +9,6 @@ where they stop."""
 
 import math
 from dataclasses import dataclass
-from statistics import mean
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -62,15 +61,6 @@ class DrivingLine(PathGeometry):
             return 0, 0.0
         i = int(at)
         return (i, at - i) if i <= last else (last, 1.0)
-
-
-def first_speed(world: "World") -> float:
-    """Returns the speed in m/s at which the car starts to roll among others: that of the scene, or the middle
-    of its range, else the speed limit."""
-    speed = world.scene.speed
-    if speed is None:
-        return world.limits.speed_limit
-    return mean(bound for bound in (speed.lo, speed.hi) if bound is not None) / 3.6
 
 
 def stations(road: "Road") -> FloatArray:

@@ -6,6 +6,7 @@ import numpy as np
 
 from roadgpt.compiled import compiled, inlined
 from roadgpt.traffic.actor import FloatArray
+from roadgpt.traffic.boxes import part_inside
 from roadgpt.traffic.following import BESIDE_ME, HORIZON, idm
 
 HALF_WIDTH = 0.93  # m, of RoadGPT's saloon
@@ -28,17 +29,11 @@ def _is_across(x: float, y: float, heading: float, half: float, other: FloatArra
     c, s = math.cos(other[HEADING]), math.sin(other[HEADING])
     turn = heading - other[HEADING]
     dx, dy = x - other[X], y - other[Y]
-    low, high = -half, half
-    for axis in range(2):
-        here = dx * c + dy * s if axis == 0 else dy * c - dx * s
-        slope = -math.sin(turn) if axis == 0 else math.cos(turn)
-        room = other[LENGTH + axis] / 2.0 + STEP / 2.0 * abs(math.cos(turn) if axis == 0 else math.sin(turn))
-        if abs(slope) < 1e-9:
-            if abs(here) > room:
-                return False
-        else:
-            one, two = (-room - here) / slope, (room - here) / slope
-            low, high = max(low, min(one, two)), min(high, max(one, two))
+    ahead, aside = abs(math.cos(turn)), abs(math.sin(turn))
+    low, high = part_inside(
+        dx * c + dy * s, dy * c - dx * s, -math.sin(turn), math.cos(turn),
+        other[LENGTH] + STEP * ahead, other[WIDTH] + STEP * aside, -half, half,
+    )  # fmt: skip
     return low <= high
 
 

@@ -1,4 +1,4 @@
-"""Whether two boxes touch, for compiled code."""
+"""Whether two boxes touch, and where a line is in a box, for compiled code."""
 
 import math
 
@@ -23,3 +23,23 @@ def touch(
         or 2.0 * abs(dx * other[0] + dy * other[1]) > length_2 + length * c + width * s
         or 2.0 * abs(dy * other[0] - dx * other[1]) > width_2 + length * s + width * c
     )
+
+
+@inlined
+def part_inside(
+    along: float, aside: float, forward: float, sideways: float, length: float, width: float, low: float,
+    high: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Returns between which multiples of its direction, from ``low`` to ``high``, a line is in a box; the
+    first is the larger one if it is not. The place ``(along, aside)`` on the line and its direction
+    ``(forward, sideways)`` are those seen from the middle of the box along its heading, in metres."""
+    for axis in range(2):
+        here, slope = (along, forward) if axis == 0 else (aside, sideways)
+        room = (length if axis == 0 else width) / 2.0
+        if abs(slope) < 1e-9:
+            if abs(here) > room:
+                return 1.0, 0.0
+        else:
+            one, two = (-room - here) / slope, (room - here) / slope
+            low, high = max(low, min(one, two)), min(high, max(one, two))
+    return low, high

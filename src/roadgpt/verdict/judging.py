@@ -137,22 +137,23 @@ def judge(
         least = min(least, -EPSILON)
     beyond = most_beyond(road, drive, world)
     handed_to = drive.handed_to(step) if cause else None
+    outcome: Outcome = "FAIL" if cause else "PASS"
+    avoided_by, avoided = None, ""
+    if cause == "collision" and contact is not None:
+        from roadgpt.verdict.avoidable import avoidance_of
+
+        is_avoidable, avoided_by, avoided = avoidance_of(road, drive, world, contact)
+        outcome = "FAIL" if is_avoidable else "UNAVOIDABLE"
     if cause is None:
         description = _kept(drive, world, least, beyond, behind)
     else:
         whom = next((each.other for each in incidents or () if each.kind == cause), None)
-        description = _failed(road, drive, world, step, cause, side, contact, whom)
+        description = _failed(road, drive, world, step, cause, side, contact, whom, outcome)
     untold = [each for each in incidents or () if each is not contact or cause == "collision"]
     description += _counted(untold, cause) + _who_drove(drive.shares, handed_to)
     s, x, y, time = (float(drive[name][step]) for name in ("s", "x", "y", "time"))
-    outcome: Outcome = "FAIL" if cause else "PASS"
-    avoided_by: tuple[str, ...] | None = None
     if cause == "collision" and contact is not None:
-        from roadgpt.verdict.avoidable import avoidance_of
-
-        is_avoidable, avoided_by, said = avoidance_of(road, drive, world, contact)
-        outcome = "FAIL" if is_avoidable else "UNAVOIDABLE"
-        description += f"; {said}"
+        description += f"; {avoided}"
         s, (x, y), time = contact.at_s, contact.at_xy, contact.at_time
     description += "".join(f"; {each}" for each in drive.missed)
     return Verdict(
@@ -285,6 +286,7 @@ def _failed(
     side: Side | None,
     contact: Incident | None,
     whom: str | None,
+    outcome: Outcome,
 ) -> str:
     profile = world.profile_of(road)
     is_beside = (
@@ -306,15 +308,16 @@ def _failed(
         length=road.length,
         whom=whom,
         patience=STUCK_TIME if drive.others is None else STUCK_AMONG_OTHERS,
-        contact=_touched(contact, f"after {contact.at_s:.0f} m") if contact else "hit somebody",
+        contact=_touched(contact, f"after {contact.at_s:.0f} m", outcome) if contact else "hit somebody",
     )
     if contact is None or cause == "collision":
         return told
-    return f"{told} and {_touched(contact, later)}" + (f"; {how}" if cause == "out of lane" else "")
+    return f"{told} and {_touched(contact, later, outcome)}" + (f"; {how}" if cause == "out of lane" else "")
 
 
-def _touched(incident: Incident, where: str) -> str:
-    """Returns in words how the tested car and somebody else touched, and whose fault it was."""
+def _touched(incident: Incident, where: str, outcome: Outcome) -> str:
+    """Returns in words how the tested car and somebody else touched, and whose fault it was: the tested car's
+    only if somebody could have avoided it."""
     found, name = incident.contact, incident.other
     assert found is not None
     is_hit = found.face == "rear" or (found.face != "front" and found.other_face == "front")
@@ -322,8 +325,9 @@ def _touched(incident: Incident, where: str) -> str:
     own, other = FACES[found.face], FACES[found.other_face]
     its = f"at {abs(found.other_speed) * 3.6:.0f} km/h" if abs(found.other_speed) > STANDS else "standing"
     overlap = "" if found.overlap is None else f" and {percent(found.overlap)} overlap"
-    fault = "at fault" if found.at_fault else "not at fault"
+    fault = "; at fault" if outcome == "FAIL" else ""
+    fault = fault if found.at_fault else "; not at fault"
     return (
         f"{verb} {where} at {found.speed * 3.6:.0f} km/h: its {own} met the {other} of {name}, {its}, with "
-        f"{found.impact_speed * 3.6:.0f} km/h of difference{overlap}; {fault}"
+        f"{found.impact_speed * 3.6:.0f} km/h of difference{overlap}{fault}"
     )

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from roadgpt.drive.drivers.reference import Reference
-from roadgpt.drive.driving_line import first_speed, pedals_for
+from roadgpt.drive.driving_line import pedals_for
 from roadgpt.drive.view import Command, View
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ class Robot(Reference):
         for curvature, stretch in zip(line.curvature[1:], line.stretch[1:], strict=True):
             share = math.exp(-line.step * stretch / self.to_rear)
             self._yaw.append(share * self._yaw[-1] + (1 - share) * curvature)
-        self._held = first_speed(world)
+        self._held = world.first_speed
         self._aside = self._behind = 0.0
 
     def steer(self, view: View) -> Command:
