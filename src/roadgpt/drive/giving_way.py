@@ -41,7 +41,6 @@ if TYPE_CHECKING:
 
 HEADWAY = 1.5  # s
 PULL = 1.5  # m/s^2, with which the car is expected to drive on, as the cars of the traffic
-SLOWEST = 3.0  # m/s, with which somebody is expected to come at least
 LENGTH = 4.7  # m, of RoadGPT's saloon
 SPACING = 2.0  # m between points of the ways of others
 ASIDE, SAME = 1.5, 0.7  # m from a way, cosine of the angle to it, within which somebody drives along it
@@ -103,7 +102,8 @@ class GivingWay:
             _, top, ways = self._junctions[0]
             rows = [each[1:6] for each in view.others if each.kind in VEHICLES]
             margin = 0.0 if self._goes else MARGIN
-            car = np.array([front - LENGTH, view.speed, top, self._waited, margin])
+            limit = view.world.limits.speed_limit
+            car = np.array([front, line - front, view.speed, top, self._waited, margin, limit])
             self._goes = not rows or not _is_awaited(ways, np.array(rows), car)
             found += [] if self._goes else [line - view.s]
         if self._crosswalks and must < (line := self._crosswalks[0][0]) < front + far:
@@ -156,9 +156,9 @@ def _ways(lanes: Lanes, leg: Leg, key: Leg, start: float, end: float) -> Iterato
 @compiled
 def _is_awaited(ways: FloatArray, others: FloatArray, car: FloatArray) -> bool:
     """Returns whether the car has to wait for one of the others: x, y, heading, speed and length of each.
-    ``car`` has the station of its rear, its speed, its speed in the junction, for how long it has waited, and
-    the seconds that it keeps free."""
-    rear, v, top, waited, margin = car
+    ``car`` has the station of its front, the metres before its line, its speed, its speed in the junction,
+    for how long it has waited, the seconds that it keeps free, and up to which speed others may speed up."""
+    front, before, v, top, waited, margin, limit = car
     for other in others:
         speed, half = other[3], other[4] / 2.0
         for way in ways:
@@ -174,8 +174,11 @@ def _is_awaited(ways: FloatArray, others: FloatArray, car: FloatArray) -> bool:
                 is_far = left > speed * speed / (2.0 * EASY) + speed + 15.0
                 if (speed < STANDING and waited > TURN) or (waited > PATIENCE and is_far):
                     continue
-                leaves = time_over(v, max(way[5] - rear, 0.0), top, PULL)
-                if left / max(speed, SLOWEST) > leaves + margin:
+                through = max(way[5] - front + LENGTH, 0.0)
+                leaves = time_over(v, through, top, PULL)
+                if v > top:  # it slows down before the junction
+                    leaves = 2.0 * before / (v + top) + max(through - before, 0.0) / top
+                if time_over(speed, left, limit, PULL) > leaves + margin:
                     continue
             return True
     return False

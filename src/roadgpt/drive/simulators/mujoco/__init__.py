@@ -3,13 +3,15 @@
 The car can be changed: ``MujocoSimulator(replace(ETK_LIKE, max_drive_acceleration=4.0))`` uses a car with
 weaker acceleration."""
 
+import math
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from roadgpt.brief.junctions import RAMPS
 from roadgpt.drive.camera_sensor import CameraSensor, camera_of
-from roadgpt.drive.drive import COLUMNS, Columns, Drive
+from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive
 from roadgpt.drive.drive_monitor import DriveMonitor
 from roadgpt.drive.driver_guard import DriverGuard
 from roadgpt.drive.outlook import Outlook
@@ -34,12 +36,17 @@ _SEEN = itemgetter(
 EASY = 3.0  # m/s^2, with which a car slows down for a bend, and that it takes sideways there
 
 
-def _first_speed(road: "Road", world: "World", start: float) -> float:
+def _first_speed(road: "Road", world: "World", start: float, box: Box) -> float:
     """Returns the speed in m/s at which the car starts to roll. Where the scene does not say it, it is at
-    most that from which the car slows down without effort for the bends behind ``start``."""
+    most that from which the car slows down without effort for the bends behind ``start``, and stops before
+    the first junction if it has no priority there."""
     speed = world.first_speed
     if world.scene.speed is not None:
         return speed
+    front = start + box.ahead + box.length / 2
+    stops = [way for way in road.passages if way.control != "priority" and way.entered.kind not in RAMPS]
+    lines = [way.line - front for way in stops if way.line > front]
+    speed = min([speed, *(math.sqrt(2 * EASY * away) for away in lines)])
     away = np.arange(0.0, min(speed**2 / 2 / EASY, road.length - start), 1.0)
     bends = np.abs(road.curvature(start + away))
     return float(np.sqrt((EASY / np.maximum(bends, 1e-6) + 2 * EASY * away).min(initial=speed**2)))
@@ -78,7 +85,7 @@ class MujocoSimulator:
         guard.start(road, world, seed)
         middle = float(world.profile_of(road).middle(monitor.start))
         rolls = traffic is not None or world.scene.speed is not None
-        speed = _first_speed(road, world, monitor.start) if rolls else 0.0
+        speed = _first_speed(road, world, monitor.start, self.car.box) if rolls else 0.0
         vehicle.put(monitor.start, middle + self.start_offset, speed)
         rows, step = [vehicle.row.tobytes()], 0
         while True:
