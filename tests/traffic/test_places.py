@@ -15,9 +15,10 @@ from roadgpt.network.markings import strokes
 from roadgpt.run import Setup, perform
 from roadgpt.traffic.actor import SIZES, corners
 from roadgpt.traffic.lights import GREEN, RED
-from roadgpt.traffic.places import offset_of, parked_rows, way_of
+from roadgpt.traffic.places import offset_of, parked_rows
 from roadgpt.traffic.traffic import begin
 from roadgpt.traffic.way import Way
+from roadgpt.traffic.ways import way_of
 
 CROSSROADS = "straight 150 // crossroads straight none angle=90 // straight 150"
 PLANS = [
@@ -57,7 +58,7 @@ def role(text):
 def way(plan, text, near=30.0):
     road, world, _ = made(plan)
     try:
-        return way_of(role(text), near, road, world)
+        return way_of(role(text), near, road, world, 6.0 if "away" in text else None)
     except UsageError as error:
         said = str(error)
     assert said[0].islower()

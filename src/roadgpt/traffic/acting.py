@@ -1,19 +1,25 @@
-"""Moves one actor of a scene along its way: its actions one after another, each in phases, and what it does
-before the first of them.
+"""One actor of a scene: where it is at first, how it comes to meet the tested car, and what it does.
 
-Speeds change with a constant acceleration. Sideways, an actor moves by half a cosine wave: slowly at first
-and at the end, and in the middle with the greatest speed that its action says."""
+What a scene leaves open is chosen so that something comes of it: who crosses or comes towards the tested car
+meets it, and the first action begins after ROLL seconds. Speeds change with a constant acceleration.
+Sideways, an actor moves by half a cosine wave: slowly at first and at the end, and in the middle with the
+greatest speed that its action says."""
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping
 from typing import Literal, NamedTuple
 
+import numpy as np
+
 from roadgpt.brief.junctions import Side
-from roadgpt.brief.scene import ActorKind, Mark, What, Where
-from roadgpt.traffic.actor import STEP, Size
+from roadgpt.brief.scene import ALONG, CUES, DOINGS, MOVING, NUMBERS, Action, Role, What, Where
+from roadgpt.errors import SceneError
+from roadgpt.traffic.actor import SIZES, STEP
 from roadgpt.traffic.following import HARDEST, JAM, idm, time_over
+from roadgpt.traffic.places import offset_of, stretch_of
+from roadgpt.traffic.traffic import Stage
 from roadgpt.traffic.way import GRIP, Way
+from roadgpt.traffic.ways import way_of
 
 ROLL = 4.0  # s, after which the first action begins whose begin the scene leaves open
 LAST = 2.5  # s before a meeting, from which on somebody who is moving no longer matches the tested car
@@ -22,10 +28,21 @@ MATCHED = 3.0  # m/s^2, with which somebody matches the tested car
 SHARPEST = 2.0  # sideways nobody moves faster than the speed ahead divided by this
 FAST = 250.0 / 3.6  # m/s, the most that a scene can ask for
 BRAKE, STOP, CHANGE = 6.0, 3.0, 2.0  # m/s^2
+EASY = 4.0  # m/s^2, with which the tested car can stop before who stands or is slow
 TURNING = 20.0 / 3.6  # m/s, of vehicles that turn at a junction, at most
+CUT_IN = 10.0  # m, the gap at which one cuts in
+PASSED = 10.0  # m, the gap at which one has overtaken
+HEADWAY = 2.0  # s, of who is ahead
+BEHIND = 1.5  # s, of who is behind, and of several alike one behind another
+INTO = 1.0  # s of headway with which one turns in or merges ahead of the tested car
+STANDS = 2.0  # m between several alike that stand
+ONCOMING = 40.0  # m between several alike that come towards the tested car
+NEAR = 10.0  # m before the meeting, where a vehicle waits at a junction
+USUAL: Mapping[str, float] = {"adult": 5 / 3.6, "child": 5 / 3.6, "bicycle": 15 / 3.6, "animal": 20 / 3.6}
+"""Speeds in m/s: those of Euro NCAP's persons (CPNA) and bicycle (CBNA); that of the animal is ours."""
 LATERAL: Mapping[What, float] = {
     "swerve": 0.5, "drift": 0.5, "cut_in": 1.5, "cut_out": 1.5, "change_lane": 1.0, "overtake": 1.5,
-    "merge": 1.0, "pull_out": 1.0, "wrong_way": 1.0,
+    "pull_out": 1.0, "wrong_way": 1.0,
 }  # fmt: skip
 """The greatest speed sideways in m/s."""
 PULL: Mapping[str, float] = {
@@ -34,45 +51,47 @@ PULL: Mapping[str, float] = {
 """The acceleration from rest in m/s^2. The bicycle of Euro NCAP's CBLA reaches 15 km/h within 3.5 m."""
 PATH, RUNS, RUNNING_PATH = 1.0, 6.0 / 3.6, 1.5
 """Euro NCAP's persons reach their speed within 1 m (CPNA), or 1.5 m if they run (CPFA)."""
-
-
-def pull_of(kind: ActorKind, speed: float) -> float:
-    """Returns with which acceleration in m/s^2 somebody starts to move who will have this speed in m/s."""
-    if kind in ("adult", "child"):
-        return max(speed**2 / 2 / (RUNNING_PATH if speed > RUNS else PATH), 0.1)
-    return PULL[kind]
-
-
-def starts(kind: ActorKind, n: Mapping[str, float], usual: float) -> tuple[float, float]:
-    """Returns the speed in m/s that somebody comes to from rest, and the acceleration in m/s^2, by the
-    numbers of an action; ``usual`` is the speed of which they say nothing."""
-    goal = n.get("to", usual)
-    return goal, abs(n.get("accel", pull_of(kind, goal)))
+HEAD_ON: tuple[What, ...] = ("drift", "wrong_way", "overtake")
+"""What leads who comes towards the tested car into its lane."""
+CROSSINGS = ("crossing", "crosswalk")
+IN_LANE = ("ahead", "behind", "oncoming")
+PLACES = ("gap", "headway", "lead", "station")
+SCALES: Mapping[str, float] = {
+    "speed": 1 / 3.6, "faster": 1 / 3.6, "to": 1 / 3.6, "overlap": 0.01, "impact": 0.01,
+}  # fmt: skip
 
 
 class Car(NamedTuple):
-    """The tested car as it is seen from its lane: the station of its middle, its speed and how far it has
-    come in metres and seconds, and its size."""
+    """The tested car as it is seen from its lane: the station of its middle and its speed in metres and
+    seconds, and its size."""
 
     s: float
     v: float
-    came: float
     length: float
     width: float
 
-    def after(self, time: float) -> "Car":
-        """Returns the car some seconds later if it keeps its speed."""
-        return self._replace(s=self.s + self.v * time, came=self.came + self.v * time)
-
 
 class Deed(NamedTuple):
-    """An action with the numbers that were drawn for it, in metres and seconds."""
+    """An action, and the numbers that were drawn for it, in metres, seconds and shares."""
 
-    what: What
-    side: Side | None
-    n: Mapping[str, float]
-    event: Mark | None = None
-    """What somebody else does, on which it begins."""
+    action: Action
+    n: dict[str, float]
+
+    @property
+    def what(self) -> What:
+        """What is done."""
+        return self.action.what
+
+    @property
+    def event(self) -> tuple[str, ...] | None:
+        """What somebody else does, on which it begins."""
+        mark = self.action.at
+        return (mark.word, mark.of, str(mark.number), mark.what) if mark and mark.what else None
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the scene leaves open when it begins."""
+        return self.event is None and not {*CUES} & {*self.n}
 
 
 class Meeting(NamedTuple):
@@ -112,50 +131,338 @@ class Slide(NamedTuple):
         return math.pi / 2 * abs(self.by) / self.lasts
 
 
-@dataclass(eq=False)
+def drawn(thing: Role | Action, rng: np.random.Generator) -> dict[str, float]:
+    """Returns a number for each range of a role or an action, in metres, seconds and shares."""
+    found = {}
+    for field, number in NUMBERS.items():
+        amount = getattr(thing, field, None)
+        if amount is not None:
+            low = number.least if amount.lo is None else amount.lo
+            high = number.most if amount.hi is None else amount.hi
+            one = float(rng.uniform(low, high)) if low < high else low
+            found[field] = one * SCALES.get(field, 1.0)
+    return found
+
+
+def reach(time: float, speed: float, goal: float, pull: float) -> float:
+    """Returns how far one comes in some seconds whose speed changes to ``goal`` with ``pull``."""
+    changes = min(time, abs(goal - speed) / max(pull, 1e-9))
+    last = speed + math.copysign(pull * changes, goal - speed)
+    return (speed + last) / 2 * changes + last * (time - changes)
+
+
 class Act:
-    """An actor of a scene on its way. Metres, seconds; ``forward`` is 1, or -1 against the way."""
+    """An actor of a scene on its way, in metres and seconds."""
 
-    kind: ActorKind
-    where: Where
-    size: Size
-    deeds: list[Deed]
-    way: Way
-    forward: int
-    shift: float
-    """From a station of its way to that of the tested car's lane beside it."""
-    s: float
-    t: float
-    v: float
-    cruise: float
-    """The speed that it is to have when it meets the tested car."""
-    limit: float
-    aside: Callable[["Act", Deed], float]
-    """Returns where an action leads to, in metres to the left of the way."""
-    events: dict[tuple[str, ...], float]
-    """When what has begun and ended in the scene."""
-    name: tuple[str, ...] | None
-    """How events call it; None for the second of several alike and those behind it."""
-    meeting: Meeting | None = None
-    waits: bool = False
-    """Whether it stands until it has to go to be in time for its meeting."""
-    held: tuple[float, float] | None = None
-    """How far its middle is ahead of the tested car's at first, and how much faster it is, if it keeps to
-    that until its first action."""
-    matches: bool = False
-    """Whether it comes to its meeting when the tested car does."""
-    begun: int = 0
-    unseen: Deed | None = None
-    """The first action that began when it was gone."""
-    phases: list[Phase] = field(default_factory=list)
-    clock: float = 0.0
-    pull: float = CHANGE
-    slide: Slide | None = None
-    slope: float = 0.0
+    def __init__(
+        self, stage: Stage, path: Way, role: Role, car: Car, rng: np.random.Generator,
+        events: dict[tuple[str, ...], float], name: tuple[str, str], alike: "list[Act]",
+    ) -> None:  # fmt: skip
+        """Draws its numbers, and places it as seen from the tested car, whose lane is ``path``. Raises
+        SceneError if it cannot be, or act, on this road.
 
-    def __post_init__(self) -> None:
-        self.v = min(self.v, self.way.bend(self.s, self.t, self.forward)[1])
-        self.goal, self.signs = self.v, dict[int, float]()
+        Args:
+            events: when what has begun and ended in the scene.
+            name: how events call it.
+            alike: those of the same role so far, behind whom it is. Only the first one makes events."""
+        self.road, self.world, self.path, self.role = stage.road, stage.world, path, role
+        self.kind, self.where, self.side, self.size = role.kind, role.where, role.side, SIZES[role.kind]
+        self.time, self.car, self.start = 0.0, car, car.s
+        self.events, self.name, self.copy = events, name, len(alike)
+        self.half = (self.size.length + car.length) / 2
+        self.limit = self.world.limits.speed_limit
+        self.kerb = self.world.profile_of(self.road).side
+        self.n, numbers = drawn(role, rng), [drawn(each, rng) for each in role.actions]
+        self.n |= {field: alike[0].n[field] for field in PLACES if alike and getattr(role, field)}
+        self.cruise = self._cruise()
+        """The speed that it is to have when it meets the tested car."""
+        self.deeds = [self._deed(*each) for each in zip(role.actions, numbers, strict=True)]
+        if not self.deeds and self.where in CROSSINGS:
+            self.deeds = [Deed(Action(what="cross"), {})]
+        whats = [deed.what for deed in self.deeds]
+        self.first = whats[0] if whats else None
+        self.cue = self.deeds[0].n if self.deeds else dict[str, float]()
+        crosses = self.where == "beside" and not {"cross", "turn_in"}.isdisjoint(whats)
+        self.crosses = crosses or self.where in CROSSINGS
+        is_along = self.where in (*ALONG, "parked", "beside") and "turn_across" not in whats
+        self.is_along = is_along and not self.crosses
+        is_against = self.where == "oncoming" or self.first == "wrong_way"
+        self.forward = -1 if self.is_along and is_against else 1
+        """1 along its way, -1 against it."""
+        stands = self.kind not in MOVING or self.where == "parked" or self.crosses
+        stands |= self.where == "beside" and "speed" not in self.n
+        if stands and self.deeds:  # where it begins to act is where it is
+            self.n |= {"station": self.cue.pop("station")} if "station" in self.cue else {}
+            if self.is_along and self.deeds[0].is_open:
+                self.cue["ttc"] = LAST
+        self.v = v = 0.0 if stands or self.n.get("speed") == 0 else self.cruise
+        self.way, self.shift, self.t = path, 0.0, 0.0
+        """From a station of its way, ``shift`` leads to that of the tested car's lane beside it; ``t`` is how
+        far it is to the left of its way."""
+        self.meeting: Meeting | None = None
+        self.held: tuple[float, float] | None = None
+        """How far its middle is ahead of the tested car's at first, and how much faster it is, if it keeps to
+        that until its first action."""
+        turns_off = self.is_along and "turn_off" in whats
+        if self.is_along:
+            self.s = self._beside()
+            self.t = self._aside(self.s)
+            self.meeting = self._head_on()
+            if self.first == "cut_in" and {"time", "distance", "station"}.isdisjoint(self.cue):
+                self.held = (self.s - car.s, v - car.v)
+        if not self.is_along or turns_off:
+            self.way = alike[0].way if alike else self._own_way()
+            assert self.way.meets is not None
+            crossing = Meeting(self.way.meets[0], path.from_road(self.way.meets[1]))
+            self.shift = crossing.car - crossing.own
+            if turns_off:
+                self.s, self.meeting = self.s - self.shift, crossing
+            else:
+                self.meeting, self.s = self._crossing(crossing)
+        self.waits = v == 0 and not self.is_along
+        """Whether it stands until it has to go to be in time for its meeting."""
+        self.matches = bool(self.meeting and v and not turns_off)
+        """Whether it comes to its meeting when the tested car does."""
+        self.goal = self.v = min(v, self.way.bend(self.s, self.t, self.forward)[1])
+        self.pull, self.begun = CHANGE, 0
+        self.unseen: Deed | None = None
+        """The first action that began when it was gone."""
+        self.phases: list[Phase] = []
+        self.clock, self.slid, self.slope = 0.0, 0.0, 0.0
+        self.slide: Slide | None = None
+        self.signs: dict[int, float] = {}
+        if self.copy and self.crosses and self.meeting:
+            aside = math.sin(path.pose(self.meeting.car)[3] - self.way.pose(self.meeting.own)[3])
+            self.t = self.copy * (self.size.width + 0.5) * math.copysign(1.0, aside)
+        self._check()
+
+    def _deed(self, action: Action, n: dict[str, float]) -> Deed:
+        if action.at and not action.at.what:
+            first, last = stretch_of(action.at, self.road, self.path)
+            before = max(first - 2.0 * self.cruise, 0.0)
+            n["station"] = {"after": last, "in": (first + last) / 2, "before": before}[action.at.word]
+        return Deed(action, n)
+
+    def _cruise(self) -> float:
+        """The speed that it has, or comes to as soon as it starts."""
+        if self.kind not in MOVING:
+            return 0.0
+        if "speed" in self.n and (self.n["speed"] or self.where not in (*CROSSINGS, "junction")):
+            return self.n["speed"]
+        if "faster" in self.n:
+            return max(self.car.v + self.n["faster"], 0.0)
+        if self.kind in USUAL:
+            return min(USUAL[self.kind], self.limit)
+        if self.role.actions and self.role.actions[0].what in ("turn_in", "turn_across"):
+            return min(TURNING, self.limit)
+        return self.limit if self.where == "oncoming" else min(self.car.v, self.limit) or self.limit
+
+    def _check(self) -> None:
+        def refuse(why: str) -> None:
+            where = self.where.replace("lane", "in the next lane")
+            raise SceneError(f"the {self.kind.replace('_', ' ')} {where} {why}")
+
+        first = self.deeds[0] if self.deeds else None
+        if self.is_along and self.forward < 0 and self.s < 0:
+            refuse("drives away before it is on the road; give another place")
+        if self.v == 0 and not self.waits and self.state() is None:
+            refuse(
+                f"would stand at {self.along:.0f} m, but the road is {self.road.length:.0f} m long; make the "
+                "road longer, or give another place"
+            )
+        if self.held and self.along + ROLL * self.v < self.size.length / 2:
+            refuse(
+                "would have to begin its action before the begin of the road; give another gap, or another "
+                "speed"
+            )
+        wait = self.wait(first) if first and (self.waits or self.held) else 0.0
+        if self.waits and wait < 0:
+            refuse("cannot be where it meets the tested car in time; give another place, or more speed")
+        if self.held and wait == math.inf and first and not first.event:
+            refuse("never comes to where it is to act; give another gap or speed")
+        moves = self.cruise > 0
+        for deed in self.deeds:
+            moves = moves or deed.what in ("speed", "overtake", "pull_out")
+            moves = moves or max(deed.n.get("to", 0.0), deed.n.get("accel", 0.0)) > 0
+            if deed.what in (*LATERAL, "merge") and not moves:
+                refuse(f"stands, so it never {DOINGS[deed.what].said}; give it a speed, or 'accel'")
+            if deed.what in LATERAL:
+                self._leads_to(deed, self.along, self.t)
+
+    # where it is at first
+
+    def _own_way(self) -> Way:
+        """Returns the way of somebody who does not stay along the tested car's lane: to where the tested car
+        is when it has rolled for long enough, or to the place that the scene says."""
+        front, v, away = self.car.s + self.half, self.car.v, self.n.get("away")
+        if self.crosses and "ttc" in self.cue and away is None:
+            away = min(reach(self.cue["ttc"], 0.0, *self._starts(self.cue)), 60.0)
+        near = front + v * (ROLL + HEADWAY if self.crosses else LAST)
+        if self.role.at:
+            first, last = stretch_of(self.role.at, self.road, self.path)
+            near = {"after": last, "in": first, "before": first - EASY * v}[self.role.at.word]
+        near = self.n.get("station", near)
+        way = way_of(self.role, self.path.to_road(max(near, 0.0)), self.road, self.world, away)
+        if self.crosses and way.meets and "station" not in self.n and not self.role.at:
+            lasts = time_over(0.0, way.meets[0] + self.car.width / 2, *self._starts(self.cue))
+            later = front + v * (1.0 + lasts)
+            if later > near:
+                return way_of(self.role, self.path.to_road(later), self.road, self.world, away)
+        return way
+
+    def _crossing(self, met: Meeting) -> tuple[Meeting, float]:
+        """Returns the meeting of somebody who comes along another way, and the station where it is at first.
+        The places on the tested car are those of Euro NCAP: CCCscp, CCFtap, CMCscp, CMFtap."""
+        car, (length, width, _) = self.car, self.size
+        if "impact" in self.n or self.kind in USUAL:
+            hit = (self.n.get("impact", 0.5) - 0.5) * car.width
+            found = Meeting(met.own + hit, met.car - width / 2)
+        elif self.first in ("merge", "turn_in") or self.where in ("ramp", "roundabout"):
+            found = Meeting(met.own, met.car - INTO * car.v - length / 2)
+        elif self.where == "oncoming" or self.side == "opposite":
+            found = Meeting(met.own - length / 2, met.car - width / math.sqrt(2))
+        elif self.kind == "motorcycle":
+            found = Meeting(met.own - (car.width + length) / 2, met.car + car.length / 10)
+        else:
+            found = Meeting(met.own - length / 4, met.car - width / 2)
+        if self.v == 0:
+            away = self.n.get("away", NEAR)
+            return found, 0.0 if self.crosses else max(met.own - away, length / 2)
+        found = found._replace(own=found.own - self.copy * (length + STANDS + BEHIND * self.v))
+        eta = (found.car - car.s - car.length / 2) / max(car.v, 1.0)
+        return found, found.own - self.v * eta
+
+    def _head_on(self) -> Meeting | None:
+        """Returns where somebody who comes towards the tested car in its lane meets it."""
+        comes = self.first in HEAD_ON or {"impact", "overlap"} & {*self.n}
+        if self.forward > 0 or not comes:
+            return None
+        gap = self.s - self.car.s - self.half
+        share = self.car.v / max(self.car.v + self.cruise, 0.1)
+        place = self.car.s + self.car.length / 2 + gap * share
+        return Meeting(place + self.size.length / 2, place)
+
+    def _beside(self) -> float:
+        """Returns the station along the tested car's lane where somebody is at first who is along it."""
+        n, car, v, length = self.n, self.car, self.v, self.size.length
+        apart = length + STANDS + BEHIND * v
+        if self.forward < 0:
+            apart = max(apart, ONCOMING + length)
+        if self.where == "behind" or (self.first == "overtake" and self.forward > 0):
+            apart = -apart
+        if "station" in n or "lead" in n:
+            s = n["station"] if "station" in n else car.s + n["lead"]
+        elif self.role.at:
+            first, last = stretch_of(self.role.at, self.road, self.path)
+            half = length / 2 + 5.0
+            s = {"after": last + half, "in": (first + last) / 2, "before": first - half}[self.role.at.word]
+        else:
+            gap = self._said_gap(n)
+            sign = -1 if self.where == "behind" else 1
+            s = car.s + sign * ((self._gap_of_cue() if gap is None else gap) + self.half)
+            last = self.path.length - length / 2 - 1.0
+            if gap is None and v == 0 and car.s + self.half + HEADWAY * car.v < last:
+                s = min(s, last)
+        return s + self.copy * apart
+
+    def _said_gap(self, n: Mapping[str, float]) -> float | None:
+        """Returns the gap of a place or of a condition that is told as a gap or a headway."""
+        if "gap" in n or "headway" not in n:
+            return n.get("gap")
+        return n["headway"] * (self.v if self.where == "behind" else self.car.v)
+
+    def _gap_of_cue(self) -> float:
+        """Returns the gap at first of which nothing is said: so that its first action begins after ROLL."""
+        car, cue = self.car, self.cue
+        away = self.forward * self.v - car.v
+        rate = -away if self.where == "behind" else away
+        slower, said = max(-rate, 0.0), self._said_gap(cue)
+        if self.where == "oncoming" and self.first in HEAD_ON and self.deeds[0].is_open:
+            t = self._place(self.where, car.s)
+            aside = abs(self._leads_to(self.deeds[0], car.s, t) - self._aside(car.s))
+            cue["ttc"] = 1.0 + math.pi / 2 * aside / cue.get("lateral", LATERAL[self.deeds[0].what])
+        if "ttc" in cue and rate < 0:
+            at = -rate * cue["ttc"]
+        elif said is not None:
+            at = said
+        elif self.first == "cut_in":
+            at = CUT_IN
+        elif self.first == "overtake" and self.forward > 0:
+            at = car.v if self.where == "behind" else -2 * self.half - car.v
+        elif self.where == "behind":
+            return BEHIND * self.v
+        elif self.where in ("lane", "far"):
+            return 5.0 - self.half + slower * ROLL
+        elif self.forward < 0:
+            at = -rate * LAST
+        else:
+            return max(HEADWAY * car.v, slower * ROLL + slower**2 / 2 / EASY)
+        return at - rate * ROLL
+
+    def _across(self) -> float:
+        """Returns where in the tested car's lane it is, or comes to: see ``overlap`` and ``impact``."""
+        car, width = self.car, self.size.width
+        left = {"left": 1, "right": -1}.get(str(self.side), self.kerb)
+        if "impact" in self.n and self.is_along:
+            return (self.kerb if self.where == "oncoming" else left) * car.width * (0.5 - self.n["impact"])
+        if self.where == "oncoming":
+            left = -self.kerb
+        share = self.n.get("overlap", 1.0)
+        most = min(width, car.width) / car.width
+        return 0.0 if share >= most - 1e-9 else left * ((car.width + width) / 2 - share * car.width)
+
+    def _aside(self, s: float) -> float:
+        """Returns how far to the left of the middle of the tested car's lane it is at first."""
+        comes_later = any(deed.what in ("cut_in", *HEAD_ON) for deed in self.deeds)
+        given = {"impact", "overlap"} & {*self.n}
+        if self.where in ("ahead", "behind") or (given and not comes_later):
+            return self.n.get("offset", 0.0) + (self._across() if given else 0.0)
+        return self._place(self.where, s) + self.n.get("offset", 0.0)
+
+    def _place(self, where: Where, s: float, side: Side | None = None) -> float:
+        if side is None and self.side in ("left", "right"):
+            side = self.side
+        place = self.path.to_road(min(max(s, 0.0), self.path.length)), self.road, self.world, self.size.width
+        try:
+            return offset_of(where, side, *place)
+        except SceneError:
+            is_kerb = side == ("left" if self.kerb > 0 else "right")
+            if where != "lane" or is_kerb or self.first not in ("cut_in", "overtake"):
+                raise
+            return offset_of("oncoming", None, *place)
+
+    def _leads_to(self, deed: Deed, s: float, t: float) -> float:
+        """Returns where an action leads to from a place, in metres to the left of the middle of the tested
+        car's lane."""
+        width = float(self.world.profile_of(self.road).width(self.path.to_road(s)))
+        side = deed.action.side
+        match deed.what:
+            case "cut_out":
+                return self._place("lane", s, side)
+            case "change_lane" if self.where in ("ahead", "behind") and abs(t) < width / 2:
+                return self._place("lane", s, side)
+            case "change_lane" if self.where == "oncoming":
+                return t + math.copysign(width, t if side is None else 1 if side == "left" else -1)
+            case "change_lane" if side in (None, "right" if t > 0 else "left"):
+                return 0.0 if self.where == "lane" else self._place("lane", s)
+            case "change_lane":
+                return self._place("far", s, side)
+            case "overtake" if self.where == "behind":
+                return self._place("lane", s, "left" if self.kerb < 0 else "right")
+            case "drift":
+                room = min(1.0, max(abs(t) - width / 2 - 0.2, 0.5))
+                left = side == "left" if side else t < 0 if abs(t) > width / 2 else self.kerb > 0
+                return t + (1 if left else -1) * deed.n.get("shift", room)
+            case "swerve":
+                before = sum(each.what == "swerve" for each in self.deeds[: self.deeds.index(deed)])
+                shift = deed.n.get("shift", max((width - self.size.width) / 2 - 0.1, 0.3))
+                return t + (-shift if before % 2 else shift)
+            case "wrong_way" if self.where != "oncoming":
+                return t
+            case _:  # cut_in, wrong_way, pull_out, overtake of who comes towards the tested car
+                return self._across()
+
+    # how it moves
 
     @property
     def along(self) -> float:
@@ -179,74 +486,72 @@ class Act:
 
     def move(self, time: float, car: Car) -> None:
         """Moves it from a time to STEP later."""
-        left = STEP
+        self.time, self.car, left = time, car, STEP
         if not self.begun:
-            self._match(time, car)
+            self._match()
         while self.begun < len(self.deeds):
-            wait = max(self.wait(self.deeds[self.begun], time, car), 0.0)
+            deed = self.deeds[self.begun]
+            wait = max(self.wait(deed), 0.0)
             if wait >= left:
                 break
-            self._go(wait, time, car)
-            time, car, left = time + wait, car.after(wait), left - wait
-            deed = self.deeds[self.begun]
+            self._go(wait)
+            left -= wait
             self.begun += 1
             self.unseen = self.unseen or (deed if self.is_gone else None)
-            self._tell("with", time)
-            self.phases = self._phases(deed, car)
-            self._enter(time)
-        self._go(left, time, car)
+            self._tell("with")
+            self.phases = self._phases(deed)
+            self._enter()
+        self._go(left)
 
-    def _tell(self, word: str, time: float) -> None:
-        if self.name:
-            self.events[word, *self.name, self.deeds[self.begun - 1].what] = time
+    def _tell(self, word: str) -> None:
+        if not self.copy:
+            self.events[word, *self.name, self.deeds[self.begun - 1].what] = self.time
 
-    def _match(self, time: float, car: Car) -> None:
+    def _match(self) -> None:
         """Chooses the speed before the first action, so that it meets the tested car whatever that does."""
         if self.held:
             ahead, faster = self.held
-            wanted = car.v + faster + (ahead + faster * time - (self.along - car.s)) / CATCH_UP
+            wanted = (ahead + faster * self.time - (self.along - self.car.s)) / CATCH_UP
+            wanted += self.car.v + faster
             self.goal, self.pull = min(max(wanted, self.cruise / 2), FAST), MATCHED
-        elif self.matches:
-            eta, self.goal, self.pull = self._eta(car), self.cruise, MATCHED
+        elif self.matches and self.meeting:
+            eta, self.goal, self.pull = self._eta(), self.cruise, MATCHED
             self.matches = eta > LAST
-            if self.matches and self.meeting:
+            if self.matches:
                 missing = self.forward * (self.meeting.own - self.s) - self._planned(eta)
                 faster = math.copysign(min(abs(missing) / CATCH_UP, math.sqrt(4.0 * abs(missing))), missing)
                 self.goal = min(max(self.cruise + faster, 0.0), 1.5 * self.cruise)
 
-    def _eta(self, car: Car) -> float:
+    def _eta(self) -> float:
         """The seconds until the tested car is where they meet, at its speed now."""
         assert self.meeting is not None
-        return (self.meeting.car - car.s - car.length / 2) / max(car.v, 1e-3)
+        return (self.meeting.car - self.car.s - self.car.length / 2) / max(self.car.v, 1e-3)
 
     def _planned(self, eta: float) -> float:
         """Returns how far it is to be from its meeting so many seconds before it."""
-        deed = self.deeds[0] if self.deeds else None
-        if deed is None or not {"to", "accel"} & {*deed.n} or {"time", "gap", "headway"} & {*deed.n}:
+        n = self.cue
+        if not {"to", "accel"} & {*n} or {"time", "gap", "headway"} & {*n}:
             return self.cruise * eta
-        last, goal = deed.n.get("ttc", LAST), deed.n.get("to", self.cruise)
-        pull = abs(deed.n.get("accel", CHANGE))
-        return self.cruise * (eta - last) + reach(last, self.cruise, goal, pull)
+        last, goal = n.get("ttc", LAST), n.get("to", self.cruise)
+        return self.cruise * (eta - last) + reach(last, self.cruise, goal, abs(n.get("accel", CHANGE)))
 
-    def wait(self, deed: Deed, time: float, car: Car) -> float:
+    def wait(self, deed: Deed) -> float:
         """Returns in how many seconds an action begins, as far as it can be seen now."""
-        n, speed = deed.n, max(car.v, 1e-3)
+        n, car = deed.n, self.car
         if deed.event:
-            mark = deed.event
-            key = (mark.word, mark.of, str(mark.number), str(mark.what))
-            return self.events.get(key, math.inf) - time
+            return self.events.get(deed.event, math.inf) - self.time
         if "time" in n:
-            return n["time"] - time
+            return n["time"] - self.time
         if "distance" in n:
-            return (n["distance"] - car.came) / speed
+            return (n["distance"] - (car.s - self.start)) / max(car.v, 1e-3)
         if "station" in n:
             left = self.forward * (n["station"] - self.along)
             return left / max(abs(self.v), 1e-3) if left > 0 else 0.0
         if "ttc" in n and self.meeting:
-            return self._eta(car) - n["ttc"]
+            return self._eta() - n["ttc"]
         if {"gap", "headway", "ttc"} & {*n}:
-            return self._until(n, time, car)
-        before = 0.0 if not self.phases else self._left(car) if len(self.phases) == 1 else math.inf
+            return self._until(n)
+        before = 0.0 if not self.phases else self._left() if len(self.phases) == 1 else math.inf
         if deed.what == "turn_off" and self.meeting:
             room = self.meeting.own - self.s - (self.v**2 - n.get("to", TURNING) ** 2) / 2 / STOP
             return max(before, room / max(self.v, 1e-3))
@@ -254,100 +559,98 @@ class Act:
             return before
         if self.meeting and self.waits:
             way = self.forward * (self.meeting.own - self.s)
-            return self._eta(car) - time_over(0.0, max(way, 0.0), *starts(self.kind, n, self.cruise))
-        return self._eta(car) - LAST if self.meeting else ROLL - time
+            return self._eta() - time_over(0.0, max(way, 0.0), *self._starts(n))
+        return self._eta() - LAST if self.meeting else ROLL - self.time
 
-    def _until(self, n: Mapping[str, float], time: float, car: Car) -> float:
+    def _until(self, n: Mapping[str, float]) -> float:
         """Returns in how many seconds a gap, a headway or a time to collision is reached, from either side;
         if it is there from the begin on, the action begins after ROLL."""
-        gap, rate = self.gap(car), self._rate(car)
-        behind = car.v if self.along > car.s else self.v
+        gap, rate = self.gap()
         if "ttc" in n:
             aim = -rate * n["ttc"]
             if rate >= 0:
                 return math.inf
         else:
+            behind = self.car.v if self.along > self.car.s else self.v
             aim = n["gap"] if "gap" in n else n["headway"] * behind
         off = gap - aim
         first = self.signs.setdefault(self.begun, off)
         if abs(first) < 0.3:
-            return ROLL - time
+            return ROLL - self.time
         if first * off <= 0:
             return 0.0
         return -off / rate if off * rate < 0 else math.inf
 
-    def gap(self, car: Car) -> float:
-        """The distance to the tested car from bumper to bumper; of those in other lanes, it is negative where
-        they are beside or behind the car."""
-        apart = self.along - car.s
-        is_one_lane = self.where in ("ahead", "behind", "oncoming")
-        return (abs(apart) if is_one_lane else apart) - (self.size.length + car.length) / 2
+    def gap(self) -> tuple[float, float]:
+        """Returns the distance to the tested car from bumper to bumper, and how fast it grows; of those in
+        other lanes, it is negative where they are beside or behind the car."""
+        apart, away = self.along - self.car.s, self.forward * self.v - self.car.v
+        sign = -1 if apart < 0 and self.where in IN_LANE else 1
+        return sign * apart - self.half, sign * away
 
-    def _rate(self, car: Car) -> float:
-        """How fast the gap grows."""
-        away = self.forward * self.v - car.v
-        return -away if self.where in ("ahead", "behind", "oncoming") and self.along < car.s else away
+    def _starts(self, n: Mapping[str, float]) -> tuple[float, float]:
+        """Returns the speed that it comes to from rest by the numbers of an action, and its acceleration."""
+        goal = n.get("to", self.cruise)
+        return goal, abs(n.get("accel", self._pull(goal)))
 
-    def _phases(self, deed: Deed, car: Car) -> list[Phase]:  # noqa: C901 - a table
+    def _pull(self, speed: float) -> float:
+        """Returns with which acceleration it starts to move if it will have this speed."""
+        if self.kind in PULL:
+            return PULL[self.kind]
+        return max(speed**2 / 2 / (RUNNING_PATH if speed > RUNS else PATH), 0.1)
+
+    def _phases(self, deed: Deed) -> list[Phase]:  # noqa: C901 - a table
         """Returns what an action consists of, seen from where it begins."""
-        n, what, v, t = deed.n, deed.what, self.v, self.t
-        lasts, accel = n.get("duration"), n.get("accel") or None
-        to = n.get("to")
-        out: Phase
+        n, what, v = deed.n, deed.what, self.v
+        lasts, accel, to = n.get("duration"), n.get("accel") or None, n.get("to")
         pull = CHANGE if accel is None else abs(accel)
-
-        def aside(place: float, share: float = 1.0) -> Phase:
-            width = abs(place - t)
-            slides = math.pi / 2 * width / n.get("lateral", LATERAL[what])
+        if what in LATERAL:
+            place = self._leads_to(deed, self.along, self.t)
+            slides = math.pi / 2 * abs(place - self.t) / n.get("lateral", LATERAL[what])
             if lasts is not None and "lateral" not in n:
-                slides = lasts * share
-            slides = max(slides, math.pi * math.sqrt(width / 2 / GRIP), 1e-3)
+                slides = lasts * (0.5 if what == "swerve" else 1.0)
+            slides = max(slides, math.pi * math.sqrt(abs(place - self.t) / 2 / GRIP), 1e-3)
             goal = to if to is not None else None if accel is None else FAST * (accel > 0)
-            return Phase(goal, pull, place, slides, until="there")
-
+            out = Phase(goal, pull, place, slides, until="there")
+            back = out._replace(to=self.t)
         match what:
             case "keep":
                 return [Phase(lasts=ROLL if lasts is None else lasts)]
             case "brake":
                 return [Phase(min(to or 0.0, v), n.get("decel", BRAKE), lasts=lasts, until="speed")]
             case "stop":
-                halt = [Phase(0.0, n.get("decel", STOP), until="speed")]
-                speed = v or self.cruise
-                waits = [Phase(lasts=lasts), Phase(speed, pull_of(self.kind, speed), until="speed")]
-                return halt if lasts is None else halt + waits
+                halt, speed = Phase(0.0, n.get("decel", STOP), until="speed"), v or self.cruise
+                goes = Phase(speed, self._pull(speed), until="speed")
+                return [halt] if lasts is None else [halt, Phase(lasts=lasts), goes]
+            case "speed" if to is None and accel is not None:
+                return [Phase(FAST * (accel > 0), pull, lasts=ROLL if lasts is None else lasts)]
             case "speed":
-                if to is None and accel is not None:
-                    return [Phase(FAST * (accel > 0), pull, lasts=ROLL if lasts is None else lasts)]
                 goal = self.limit if to is None else to
                 if accel is None and lasts:
-                    return [Phase(goal, max(abs(goal - v) / lasts, 1e-6), until="speed")]
+                    pull, lasts = max(abs(goal - v) / lasts, 1e-6), None
                 return [Phase(goal, pull, lasts=lasts, until="speed")]
             case "follow":
-                headway = max(self.gap(car) - JAM, 0.0) / max(v, 1.0)
+                headway = max(self.gap()[0] - JAM, 0.0) / max(v, 1.0)
                 return [Phase(lasts=math.inf if lasts is None else lasts, follows=headway)]
             case "open_gap":
                 slower = max(v - 2.0, 0.0)
                 slow, again = Phase(slower, 1.0, until="speed"), Phase(v, 1.0, until="speed")
                 return [slow, Phase(lasts=max((lasts or 6.0) - 2 * (v - slower), 0.0)), again]
             case "swerve":
-                out = aside(self.aside(self, deed), 0.5)
-                pause = max((lasts or 0.0) - 2 * out.slides, 0.0)
-                return [out, Phase(lasts=pause), out._replace(to=t)]
-            case "overtake" if self.forward > 0:
-                fast = Phase(max(car.v + 20 / 3.6, v) if to is None else to, pull, until="passed")
+                return [out, Phase(lasts=max((lasts or 0.0) - 2 * out.slides, 0.0)), back]
+            case "overtake" if self.forward < 0:
+                return [out, Phase(lasts=3.0), back]
+            case "overtake":
+                goal = max(self.car.v + 20 / 3.6, v) if to is None else to
+                fast = Phase(goal, pull, until="passed")
                 if self.where != "behind":
                     return [fast]
-                out = aside(self.aside(self, deed))
-                return [out._replace(goal=fast.goal), fast, out._replace(to=t, goal=None)]
-            case "overtake":
-                out = aside(self.aside(self, deed))
-                return [out, Phase(lasts=3.0), out._replace(to=t)]
+                return [out._replace(goal=goal), fast, back._replace(goal=None)]
             case "pull_out":
                 goal = self.limit if to is None else to
-                out = aside(self.aside(self, deed))
-                return [out._replace(goal=goal, pull=pull_of(self.kind, goal) if accel is None else pull)]
+                return [out._replace(goal=goal, pull=self._pull(goal) if accel is None else pull)]
             case "drift" | "cut_in" | "cut_out" | "change_lane" | "wrong_way":
-                return [aside(self.aside(self, deed))]
+                return [out]
             case "reverse":
                 back = Phase(-(5 / 3.6 if to is None else to), 1.0, until="speed")
                 return [Phase(0.0, STOP, until="speed"), back, Phase(lasts=lasts or math.inf)]
@@ -355,61 +658,57 @@ class Act:
                 return [Phase(min(v, TURNING) if to is None else to, STOP, until="met")]
             case _:  # merge, turn_in, turn_across, cross, run_light, run_sign
                 goal = self.cruise if to is None else to
-                start = pull_of(self.kind, goal) if self.waits else CHANGE
+                start = self._pull(goal) if self.waits else CHANGE
                 return [Phase(goal, start if accel is None else pull, until="met")]
 
-    def _enter(self, time: float) -> None:
+    def _enter(self) -> None:
         """Begins the phase that is next."""
         self.clock = 0.0
         if not self.phases:
-            self._tell("after", time)
+            self._tell("after")
             return
         phase = self.phases[0]
         if phase.goal is not None:
             self.goal, self.pull = phase.goal, phase.pull
         if phase.to is not None:
-            self.slide = Slide(self.t, phase.to - self.t, phase.slides)
-            self.slid = 0.0
+            self.slide, self.slid = Slide(self.t, phase.to - self.t, phase.slides), 0.0
 
-    def _left(self, car: Car) -> float:
+    def _left(self) -> float:
         """Returns after how many seconds the phase ends, as far as it can be seen now."""
         phase, left = self.phases[0], math.inf
         if phase.until == "speed":
             left = abs(self.goal - self.v) / self.pull
         elif phase.until == "there":
-            left = (
-                0.0 if self.slide is None else max(self.slide.lasts - self.slid, 0.0) / (self._pace() or 1e-9)
-            )
+            left = max(self.slide.lasts - self.slid, 0.0) / (self._pace() or 1e-9) if self.slide else 0.0
         elif phase.until == "passed":
-            missing = 10.0 - (self.along - car.s - (self.size.length + car.length) / 2)
-            left = missing / max(self.v - car.v, 1e-9)
-        elif phase.until == "met":
-            far = math.inf if self.meeting is None else self.forward * (self.meeting.own - self.s)
+            left = (PASSED - (self.along - self.car.s - self.half)) / max(self.v - self.car.v, 1e-9)
+        elif phase.until == "met" and self.meeting:
+            far = self.forward * (self.meeting.own - self.s)
             left = (far + self.size.length) / max(self.v, 1e-9)
         return max(left if phase.lasts is None else min(left, phase.lasts - self.clock), 0.0)
 
-    def _go(self, lasts: float, time: float, car: Car) -> None:
-        """Moves it by some seconds from a time on."""
+    def _go(self, lasts: float) -> None:
+        """Moves it, and the tested car as fast as it is, by some seconds."""
         while lasts > 1e-9:
-            part = min(lasts, self._left(car)) if self.phases else lasts
-            self._drive(part, car)
-            lasts, time, car = lasts - part, time + part, car.after(part)
-            self.clock += part
-            if self.phases and self._left(car) < 1e-9:
+            part = min(lasts, self._left()) if self.phases else lasts
+            self._drive(part)
+            self.time, self.car = self.time + part, self.car._replace(s=self.car.s + self.car.v * part)
+            self.clock, lasts = self.clock + part, lasts - part
+            if self.phases and self._left() < 1e-9:
                 if self.phases[0].lasts is not None:
                     self.goal = self.v
                 del self.phases[0]
-                self._enter(time)
+                self._enter()
 
     def _pace(self) -> float:
         """How fast the time of a movement sideways passes: slower for who is slow, not at all at rest."""
         assert self.slide is not None
         return min(1.0, abs(self.v) / (SHARPEST * self.slide.peak)) if self.slide.by else 1.0
 
-    def _drive(self, time: float, car: Car) -> None:
+    def _drive(self, time: float) -> None:
         """Moves it by some seconds, within which nothing else begins."""
         if self.phases and self.phases[0].follows is not None:
-            pull = idm(self.v, FAST, self.gap(car), car.v, PULL["car"], CHANGE, self.phases[0].follows)
+            pull = idm(self.v, FAST, self.gap()[0], self.car.v, PULL["car"], CHANGE, self.phases[0].follows)
             self.goal, self.pull = (FAST if pull > 0 else 0.0), max(min(abs(pull), HARDEST), 1e-6)
         before, speeds_up = self.v, min(time, abs(self.goal - self.v) / self.pull)
         self.v += math.copysign(self.pull * speeds_up, self.goal - self.v)
@@ -429,10 +728,3 @@ class Act:
         self.t = self.slide.begin + self.slide.by * (1 - math.cos(math.pi * share)) / 2
         aside = math.copysign(self.slide.peak, self.slide.by) * math.sin(math.pi * share)
         self.slope = aside / max(abs(self.v), SHARPEST * self.slide.peak)
-
-
-def reach(time: float, speed: float, goal: float, pull: float) -> float:
-    """Returns how far one comes in some seconds whose speed changes to ``goal`` with ``pull``."""
-    changes = min(time, abs(goal - speed) / max(pull, 1e-9))
-    last = speed + math.copysign(pull * changes, goal - speed)
-    return (speed + last) / 2 * changes + last * (time - changes)

@@ -3,22 +3,22 @@
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roadgpt.brief.amount import span
 from roadgpt.brief.junctions import Side
-from roadgpt.brief.scene import ActorKind, Role, Scene, Where
+from roadgpt.brief.scene import ActorKind, Mark, Scene, Where
+from roadgpt.check.measures import measure
 from roadgpt.errors import SceneError
 from roadgpt.network import is_route, network_of
 from roadgpt.network.lanes import lanes_of
 from roadgpt.network.markings import CROSSWALK
-from roadgpt.road.road import GOAL
+from roadgpt.plural import plural
 from roadgpt.traffic.actor import SIZES, FloatArray, corners
 from roadgpt.traffic.lane_map import LEAST
-from roadgpt.traffic.lane_ways import MERGED, along_lanes
-from roadgpt.traffic.way import SPACING, Way, with_headings
+from roadgpt.traffic.way import SPACING, Way
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -92,59 +92,22 @@ def _lanes_beside(s: float, road: "Road", world: "World", width: float) -> dict[
     return {name: sorted(offsets, key=abs) for name, offsets in found.items()}
 
 
-def way_of(role: Role, near: float, road: "Road", world: "World") -> Way:
-    """Returns the way of somebody who crosses the tested car's path, comes to it along other lanes, or turns
-    off. ``meets`` is where, at station ``near`` of the tested car's road or later. The numbers of ``role``
-    are no ranges. Raises SceneError if the road has no such place."""
-    turns_off = "turn_off" in (each.what for each in role.actions)
-    if turns_off or role.where in ("junction", "roundabout", "ramp", "oncoming"):
-        return along_lanes(role, near, road, world)
-    s = _crosswalk(near, road) if role.where == "crosswalk" else near
-    for passage in road.passages if role.where != "crosswalk" else ():
-        if passage.start - BEFORE < s < passage.end + BEHIND:
-            s = passage.end + BEHIND
-    if near > road.length - GOAL:
-        raise SceneError(f"the road ends at {road.length:.0f} m, before anybody can cross it; make it longer")
-    return _across(role, s if s <= road.length - GOAL else near, road, world)
-
-
-def _crosswalk(near: float, road: "Road") -> float:
-    away = CROSSWALK[0] + CROSSWALK[1] / 2
-    crossed = road.network.crossed if is_route(road) else ()
-    for passage in road.passages:
-        for end, s in ((passage.arrival, passage.start - away), (passage.departure, passage.end + away)):
-            if end in crossed and s >= near:
-                return float(s)
-    raise SceneError(f"the route passes no crosswalk after {near:.0f} m; write crosswalk behind a junction")
-
-
-def _across(role: Role, s: float, road: "Road", world: "World") -> Way:
-    """Returns the way straight across the road, at right angles to the tested car's path, or into its lane
-    for who turns in."""
-    profile = world.profile_of(road)
-    edges, rims, middle = profile.edges(s), profile.rims(s), float(profile.middle(s))
-    reach = {"left": float(edges.left) - middle, "right": middle - float(edges.right)}
-    side = str(role.side or ("left" if profile.left_hand else "right"))
-    half = SIZES[role.kind].length / 2
-    beyond = half + KERB if role.where == "crosswalk" else max(BESIDE, half + 1.0)
-    begin = span(role.away).lo if role.away else reach[side] + beyond
-    end = reach["right" if side == "left" else "left"] + beyond
-    across = np.linspace(begin, -end, math.ceil((begin + end) / SPACING) + 1)
-    along = np.full(len(across), s)
-    if turns_in := "turn_in" in (each.what for each in role.actions):
-        radius = min(DRIVEWAY, begin)
-        s += radius / 2  # so that it comes into the lane behind the station
-        turn = np.linspace(0.0, math.pi / 2, math.ceil(radius * math.pi / 2 / SPACING) + 1)
-        straight, rest = across[across > radius], np.arange(s + SPACING, road.length, SPACING)
-        across = np.r_[straight, radius * (1 - np.sin(turn)), 0 * rest]
-        along = np.r_[0 * straight + s - radius, s - radius * np.cos(turn), rest]
-    t = profile.middle(along) + SIGN[side] * across
-    xyz = road.at(along, t)
-    xyz[:, 2] = road.at(along, np.clip(t, rims.right, rims.left))[:, 2]
-    way = Way(with_headings(xyz))
-    first = int((across <= MERGED).argmax())
-    met = (float(way.stations[first]), float(along[first])) if turns_in else (begin, s)
-    return Way(way.points, met)
+def stretch_of(mark: Mark, road: "Road", path: Way) -> tuple[float, float]:
+    """Returns the first and the last station, along the tested car's lane, of a part of its route."""
+    spans = passages = [(each.start, each.end) for each in road.passages]
+    if mark.of == "turn":
+        edges = [0.0, *(edge for span in passages for edge in span), road.length]
+        free = [(a, b) for a, b in list(pairwise(edges))[::2] if b - a > 10.0]
+        lines = [road.at(np.linspace(a, b, math.ceil(b - a) + 1)) for a, b in free]
+        turns = [(a, turn) for (a, _), line in zip(free, lines, strict=True) for turn in measure(line).turns]
+        spans = [(a + turn.start, a + turn.end) for a, turn in turns]
+    at = mark.number - 1 if mark.number > 0 else len(spans) + mark.number
+    if not 0 <= at < len(spans):
+        raise SceneError(
+            f"the scene names {mark.of} {mark.number}, but the road has "
+            f"{plural(len(spans), str(mark.of)) if spans else f'no {mark.of}'}; name another place"
+        )
+    return path.from_road(spans[at][0]), path.from_road(spans[at][1])
 
 
 def parked_rows(

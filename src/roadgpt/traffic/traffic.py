@@ -74,11 +74,15 @@ class Traffic:
         self._add(states)
 
     def _add(self, states: Sequence[FloatArray]) -> None:
+        before = len(self.actors)
         for mover, own in self._movers:
             for actor in mover.actors[len(own) :]:
                 own.append(len(self.actors))
                 self.actors.append(replace(actor, name=self._free(actor.name)))
                 self._sizes = np.vstack([self._sizes, actor.size[:2]])
+        if came := len(self.actors) - before:  # they were not there in the samples so far
+            nobody = np.full((came, 5), np.nan)
+            self._samples = [np.vstack([sample, nobody]) for sample in self._samples]
         sample = np.full((len(self.actors), 5), np.nan)
         for (_, own), moved in zip(self._movers, states, strict=True):
             sample[own] = moved
@@ -96,16 +100,8 @@ class Traffic:
         """Returns the states at a time between 0 and that of the last sample, shape (actors, 5)."""
         place = time / STEP
         first = min(int(place + 1e-9), len(self._samples) - 1)
-        share, now = place - first, self._whole(first)
-        if share < 1e-6:
-            return now
-        return np.asarray((1 - share) * now + share * self._whole(first + 1))
-
-    def _whole(self, number: int) -> FloatArray:
-        """Returns a sample with rows for those who came later, too."""
-        sample = self._samples[number]
-        missing = len(self.actors) - len(sample)
-        return np.pad(sample, ((0, missing), (0, 0)), constant_values=np.nan) if missing else sample
+        share, now = place - first, self._samples[first]
+        return now if share < 1e-6 else np.asarray((1 - share) * now + share * self._samples[first + 1])
 
     @property
     def missed(self) -> tuple[str, ...]:
@@ -116,9 +112,7 @@ class Traffic:
 
     def tracks(self) -> Tracks:
         """Returns how everybody moved who was there at some time."""
-        states = np.full((len(self._samples), len(self.actors), 5), np.nan)
-        for whole, sample in zip(states, self._samples, strict=True):
-            whole[: len(sample)] = sample
+        states = np.reshape(self._samples, (len(self._samples), len(self.actors), 5))
         was_there = np.flatnonzero(~np.isnan(states[:, :, 0]).all(axis=0))
         return Tracks(tuple(self.actors[number] for number in was_there), states[:, was_there])
 

@@ -4,7 +4,7 @@ import math
 from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -31,10 +31,17 @@ class Way:
     """For the way along the tested car's own lane: the stations of the points along the tested car's road."""
 
     @classmethod
-    def along(cls, road: "Road", world: "World") -> "Way":
+    def through(cls, xyz: FloatArray, road_stations: FloatArray | None = None) -> Self:
+        """Returns the way through points ``(n, 3)``; each heading is that from the point before to that
+        behind."""
+        dx, dy = np.gradient(xyz[:, :2], axis=0).T
+        return cls(np.column_stack([xyz, np.unwrap(np.arctan2(dy, dx))]), None, road_stations)
+
+    @classmethod
+    def along(cls, road: "Road", world: "World") -> Self:
         """Returns the middle of the lane that the tested car is to follow."""
         s = np.linspace(0.0, road.length, max(int(road.length / SPACING), 1) + 1)
-        return cls(with_headings(road.at(s, world.profile_of(road).middle(s))), road_stations=s)
+        return cls.through(road.at(s, world.profile_of(road).middle(s)), s)
 
     @cached_property
     def stations(self) -> FloatArray:
@@ -46,6 +53,16 @@ class Way:
     def length(self) -> float:
         """Length in metres."""
         return float(self.stations[-1])
+
+    def from_road(self, s: float) -> float:
+        """Returns the station along the way of a station of the tested car's road."""
+        assert self.road_stations is not None
+        return float(np.interp(s, self.road_stations, self.stations))
+
+    def to_road(self, s: float) -> float:
+        """Returns the station of the tested car's road of a station along the way."""
+        assert self.road_stations is not None
+        return float(np.interp(s, self.stations, self.road_stations))
 
     @cached_property
     def _rows(self) -> list[list[float]]:
@@ -85,9 +102,3 @@ class Way:
         *_, bend, along, against = self._at(s)
         stretch = max(1.0 - bend * t, LEAST_STRETCH) if 0.0 < s < self.length else 1.0
         return stretch, math.sqrt((along if forward > 0 else against) * stretch)
-
-
-def with_headings(xyz: FloatArray) -> FloatArray:
-    """Returns points ``(n, 3)`` with the direction from those before to those behind."""
-    dx, dy = np.gradient(xyz[:, :2], axis=0).T
-    return np.column_stack([xyz, np.unwrap(np.arctan2(dy, dx))])

@@ -1,0 +1,313 @@
+"""Finds ways that meet the tested car's: across its road, through a junction, on the ring of a roundabout,
+from a ramp, and off its road."""
+
+import math
+from bisect import bisect_right
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from roadgpt.brief.scene import DOINGS, Role, What
+from roadgpt.errors import SceneError
+from roadgpt.geometry import wrap_angle
+from roadgpt.network import Passage, Route, is_route
+from roadgpt.network.lane_along import LONGEST, SHARE
+from roadgpt.network.lanes import HEADROOM, STRAIGHT_AHEAD, Lanes, lanes_of
+from roadgpt.network.markings import CROSSWALK
+from roadgpt.network.network import Leg
+from roadgpt.road.road import GOAL
+from roadgpt.traffic.actor import SIZES, FloatArray
+from roadgpt.traffic.lane_map import LEAST
+from roadgpt.traffic.lights import Lights, comes_from_side
+from roadgpt.traffic.places import BESIDE, SIGN
+from roadgpt.traffic.way import SPACING, Way
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road, World
+
+KERB = 0.1  # m, between the lanes and who stands before a crosswalk
+BEFORE, BEHIND = 5.0, 8.0  # m, from a junction to those who cross the road before and behind it
+DRIVEWAY = 6.0  # m, radius in which somebody turns from beside the road into a lane
+REACH = 300.0  # m of a way before and behind the lanes for which it was chosen, as far as there are others
+OPPOSITE = math.radians(40.0)  # an arm that is farther from straight ahead is on the left or on the right
+MERGED = 0.5  # m between the middles of two ways that have become one
+AROUND = 30.0  # m of the tested car's path before and behind a junction on which somebody may meet it
+TURNS: Mapping[What, tuple[float, float, tuple[bool, ...]]] = {
+    "cross": (0.0, math.radians(60.0), (False, True)),
+    "run_light": (0.0, math.pi, (False, True)),
+    "run_sign": (0.0, math.pi, (False, True)),
+    "turn_across": (OPPOSITE, math.pi, (False,)),
+    "turn_in": (STRAIGHT_AHEAD, math.pi, (True,)),
+    "merge": (0.0, OPPOSITE, (True,)),
+}
+"""By what angles somebody turns in a junction, the least and the most, and whether into the tested car's
+lane."""
+
+
+def way_of(role: Role, near: float, road: "Road", world: "World", away: float | None = None) -> Way:
+    """Returns the way of somebody who crosses the tested car's path, comes to it along other lanes, or turns
+    off. ``meets`` is where, at station ``near`` of the tested car's road or later. Who crosses is ``away``
+    metres from the path at first; None: beside the lanes. Raises SceneError if the road has no such place."""
+    turns_off = any(each.what == "turn_off" for each in role.actions)
+    if not turns_off and role.where not in (*WAYS, "oncoming"):
+        return _across(role, near, road, world, away)
+    place = role.where if role.where in WAYS else "junction"
+    find, wanted = WAYS["turn_off" if turns_off and place != "roundabout" else place]
+    passages, mark = road.passages, role.at
+    if mark and mark.of == "junction":
+        passages = passages[mark.number - 1 if mark.number > 0 else mark.number :][:1]
+    if is_route(road):
+        for way in find(_Around(role, road, lanes_of(road.network), Way.along(road, world), passages)):
+            if way is not None and way.meets is not None and way.meets[1] >= near:
+                return way
+    side = f"the {role.side}{' side' * (role.side == 'opposite')}" if role.side else "another side"
+    does = DOINGS[_turn(role)].said
+    raise SceneError(
+        f"the route passes no {wanted.format(near=near, side=side, does=does, where=role.where)}"
+    )
+
+
+def _across(role: Role, near: float, road: "Road", world: "World", away: float | None) -> Way:
+    """Returns the way straight across the road, at right angles to the tested car's path, or into its lane
+    for who turns in."""
+    s = near if role.where != "crosswalk" else _crosswalk(near, road)
+    for passage in road.passages if role.where != "crosswalk" else ():
+        if passage.start - BEFORE < s < passage.end + BEHIND:
+            s = passage.end + BEHIND
+    if near > road.length - GOAL:
+        raise SceneError(f"the road ends at {road.length:.0f} m, before anybody can cross it; make it longer")
+    s = s if s <= road.length - GOAL else near
+    profile = world.profile_of(road)
+    edges, rims, middle = profile.edges(s), profile.rims(s), float(profile.middle(s))
+    reach = {"left": float(edges.left) - middle, "right": middle - float(edges.right)}
+    side = str(role.side or ("left" if profile.left_hand else "right"))
+    half = SIZES[role.kind].length / 2
+    beyond = half + KERB if role.where == "crosswalk" else max(BESIDE, half + 1.0)
+    begin = reach[side] + beyond if away is None else away
+    end = reach["right" if side == "left" else "left"] + beyond
+    across = np.linspace(begin, -end, math.ceil((begin + end) / SPACING) + 1)
+    along = np.full(len(across), s)
+    if turns_in := "turn_in" in (each.what for each in role.actions):
+        radius = min(DRIVEWAY, begin)
+        s += radius / 2  # so that it comes into the lane behind the station
+        turn = np.linspace(0.0, math.pi / 2, math.ceil(radius * math.pi / 2 / SPACING) + 1)
+        straight, rest = across[across > radius], np.arange(s + SPACING, road.length, SPACING)
+        across = np.r_[straight, radius * (1 - np.sin(turn)), 0 * rest]
+        along = np.r_[0 * straight + s - radius, s - radius * np.cos(turn), rest]
+    t = profile.middle(along) + SIGN[side] * across
+    xyz = road.at(along, t)
+    xyz[:, 2] = road.at(along, np.clip(t, rims.right, rims.left))[:, 2]
+    way, first = Way.through(xyz), int((across <= MERGED).argmax())
+    met = (float(way.stations[first]), float(along[first])) if turns_in else (begin, s)
+    return replace(way, meets=met)
+
+
+def _crosswalk(near: float, road: "Road") -> float:
+    away = CROSSWALK[0] + CROSSWALK[1] / 2
+    crossed = road.network.crossed if is_route(road) else ()
+    for passage in road.passages:
+        for end, s in ((passage.arrival, passage.start - away), (passage.departure, passage.end + away)):
+            if end in crossed and s >= near:
+                return float(s)
+    raise SceneError(f"the route passes no crosswalk after {near:.0f} m; write crosswalk behind a junction")
+
+
+def _turn(role: Role) -> What:
+    return next((each.what for each in role.actions if each.what in TURNS), "cross")
+
+
+class _Around(NamedTuple):
+    """Somebody, and what is around the tested car: its route, the lanes of the map, its path, and its
+    passages where they are to meet."""
+
+    role: Role
+    route: Route
+    lanes: Lanes
+    path: Way
+    passages: Sequence[Passage]
+
+    @property
+    def s(self) -> FloatArray:
+        """The stations along the route of the points of the path."""
+        return np.asarray(self.path.road_stations)
+
+    def turns(self, passage: Passage, start: Leg) -> Iterator[tuple[float, tuple[Leg, ...]]]:
+        """Yields the ways through a junction or a roundabout, from a lane that leads into it or one of the
+        ring: the change of heading in radians, positive to the left, and the lanes."""
+        network, first = self.route.network, self.lanes[start]
+        ring = network.roundabout_of.get(passage.entered.id)
+        junctions = tuple(map(network.junction, ring.junctions)) if ring else (passage.entered,)
+        inside, waiting = {each.id for each in network.inside(junctions)}, list[tuple[Leg, ...]]([(start,)])
+        for way in waiting:
+            for each in self.lanes[way[-1]].successors:
+                if each.road in inside:
+                    waiting += [(*way, each)] * (each not in way)
+                else:
+                    turn = self.lanes[each].heading(0.0) - first.heading(first.length)
+                    yield float(wrap_angle(turn)), (*way, each)
+
+    def before(self, passage: Passage) -> Leg:
+        """Returns the lane in which the tested car comes to a passage."""
+        return self.route.legs[bisect_right(self.route.starts, passage.start - SPACING) - 1]
+
+    def whole(self, legs: Sequence[Leg]) -> tuple[Way, float]:
+        """Returns the way that comes to the first of some lanes as straight as possible, and not along the
+        tested car's, and goes on so behind the last one; and where the first lane begins."""
+        before, behind = list[Leg](), list[Leg]()
+        for more, first in ((before, legs[0]), (behind, legs[-1])):
+            here, metres = self.lanes[first], 0.0
+            while metres < REACH:
+                near = here.successors if more is behind else {*here.predecessors} - {*self.route.legs}
+                free = [self.lanes[each] for each in near if each not in (*legs, *before, *behind)]
+                if not free:
+                    break
+                here = min(free, key=lambda lane: (abs(lane.turn), lane.id))
+                more.append(here.id)
+                metres += here.length
+        parts = list[FloatArray]()
+        for lane in map(self.lanes.__getitem__, (*before[::-1], *legs, *behind)):
+            rows = lane.at(np.linspace(0.0, lane.length, max(2, math.ceil(lane.length / SPACING) + 1)))
+            is_joined = bool(parts) and math.dist(parts[-1][-1, :2], rows[0, :2]) < SPACING / 2
+            parts.append(rows[1:] if is_joined else rows)
+        return Way.through(np.concatenate(parts)), sum(self.lanes[each].length for each in before)
+
+    def met(self, legs: Sequence[Leg], passage: Passage, since: int = 0) -> Way | None:
+        """Returns the way along lanes with the first place at a passage where it crosses the tested car's
+        path or, if they have a lane in common, becomes one with it. Lanes before number ``since`` do not
+        count. None if there is no such place."""
+        import shapely
+
+        way, begin = self.whole(legs)
+        begin += sum(self.lanes[each].length for each in legs[:since])
+        one, other = (shapely.LineString(each.points[:, :2]) for each in (way, self.path))
+        places = shapely.points(shapely.get_coordinates(one.intersection(other)))
+        if {*legs[since:]} & {*self.route.legs}:
+            places = shapely.points(way.points[:, :2])
+            places = places[shapely.distance(places, other) <= MERGED]
+        own, along = shapely.line_locate_point(one, places), shapely.line_locate_point(other, places)
+        apart = np.interp(own, way.stations, way.points[:, 2])
+        apart -= np.interp(along, self.path.stations, self.path.points[:, 2])
+        s = np.interp(along, self.path.stations, self.s)
+        is_there = (own >= begin) & (np.abs(apart) < HEADROOM)
+        is_there &= (s >= passage.start - AROUND) & (s <= passage.end + AROUND)
+        places = sorted(zip(own[is_there].tolist(), s[is_there].tolist(), strict=True))
+        return replace(way, meets=places[0]) if places else None
+
+
+def _through_junction(around: _Around) -> Iterator[Way | None]:
+    """Yields the ways from an arm of a junction through it: straight across the tested car's path or, for who
+    turns, across it or into it."""
+    role, route, network = around.role, around.route, around.route.network
+    what = _turn(role)
+    usual = ["left", "right", "opposite"] if network.left_hand else ["right", "left", "opposite"]
+    sides = [str(role.side)] if role.side else usual[::-1] if what == "turn_across" else usual
+    if role.where == "oncoming":
+        sides = ["opposite"]
+    least, most, kinds = TURNS[what]
+    phases = Lights(network, 0).phases
+    directions = {arm.end: arm.direction for each in network.junctions for arm in each.arms}
+    for passage in around.passages:
+        arms, own = list[tuple[int, float, list[Leg]]](), phases.get(passage.arrival)
+        for end in passage.arms[1:]:  # the first one is the road of arrival
+            turn = float(wrap_angle(directions[end] - directions[passage.arrival] - math.pi))
+            side = "opposite" if abs(turn) <= OPPOSITE else "left" if turn > 0 else "right"
+            is_across = end in phases and phases[end] != own
+            is_fit = end not in phases or is_across == comes_from_side(role)
+            if side in sides and is_fit and (is_across or what != "run_light"):
+                lanes = [Leg(end.road, each) for each in network.lanes_into(end)]
+                arms.append((sides.index(side), abs(turn), lanes))
+        for _, _, lanes in sorted(arms):
+            turns = [each for lane in lanes for each in around.turns(passage, lane)]
+            for by, legs in sorted(turns, key=lambda each: (abs(each[0]), each[1])):
+                is_fit = least <= abs(by) <= most and (legs[-1] in route.legs) in kinds
+                if what == "run_sign":
+                    is_fit &= bool({*around.lanes.gives_way_to(legs[1])} & {*route.legs})
+                if is_fit:
+                    yield around.met(legs, passage)
+
+
+def _on_ring(around: _Around) -> Iterator[Way | None]:
+    """Yields the ways around the ring of a roundabout, past the place where the tested car enters, to exits
+    that it does not take."""
+    route, rings = around.route, around.route.network.roundabout_of
+    for passage in around.passages:
+        if (ring := rings.get(passage.entered.id)) is None:
+            continue
+        own = route.legs[route.legs.index(around.before(passage)) :]
+        entry = next(each for each in own if each.road in ring.ring)
+        for each in around.lanes[entry].successors:
+            loop = around.lanes.shortest(each, entry, "changes")
+            if loop and all(rings.get(leg.road) is ring for leg in loop):
+                for _, onward in around.turns(passage, entry):
+                    if onward[-1].road != passage.departure.road:
+                        yield around.met((*loop[:-1], *onward), passage, len(loop) - 2)
+
+
+def _from_ramp(around: _Around) -> Iterator[Way | None]:
+    """Yields the ways along a lane that ends beside the tested car's, such as one for acceleration behind a
+    ramp, and into that; and along a ramp that joins it without such a lane."""
+    lanes, legs = around.lanes, around.route.legs
+    for own in map(lanes.__getitem__, legs):
+        for key in (own.left, own.right):
+            if key is not None and key not in legs and own.successors and not lanes[key].successors:
+                way, begin = around.whole([key])
+                s = np.arange(0.0, lanes[key].length, SPACING)
+                wide = begin + s[lanes[key].width(s) >= LEAST]
+                if len(wide):
+                    yield _into(around, way, wide[0], wide[-1])
+    merges = [each for each in around.passages if each.entered.kind == "merge"]
+    yield from _through_junction(around._replace(passages=merges))
+
+
+def _into(around: _Around, way: Way, begin: float, end: float) -> Way | None:
+    """Returns the way that changes to the tested car's path in the middle between two of its stations."""
+    import shapely
+
+    path, length = around.path, min(LONGEST, SHARE * (end - begin))
+    kept = way.stations < (begin + end - length) / 2
+    if kept.sum() < 2:
+        return None
+    x, y = way.points[kept][-1, :2]
+    at = float(shapely.LineString(path.points[:, :2]).project(shapely.Point(x, y)))
+    ahead, here = path.stations > at, path.pose(at)
+    cos, sin = np.cos(path.points[ahead, 3]), np.sin(path.points[ahead, 3])
+    aside = (y - here[1]) * math.cos(here[3]) - (x - here[0]) * math.sin(here[3])
+    left = aside * (1 + np.cos(np.pi * np.minimum((path.stations[ahead] - at) / length, 1.0))) / 2
+    rest = path.points[ahead, :3] + np.column_stack([-left * sin, left * cos, 0 * left])
+    whole = Way.through(np.vstack([way.points[kept, :3], rest]))
+    first = int((np.abs(left) <= MERGED).argmax())
+    return replace(whole, meets=(float(whole.stations[kept.sum() + first]), float(around.s[ahead][first])))
+
+
+def _turning_off(around: _Around) -> Iterator[Way | None]:
+    """Yields the ways along the tested car's lane that leave its road at a junction, which is where they meet
+    last."""
+    role, path = around.role, around.path
+    side = next(each.side for each in role.actions if each.what == "turn_off")
+    for passage in around.passages if role.where in ("ahead", "behind") else ():
+        turns = sorted(around.turns(passage, around.before(passage)), key=lambda each: -abs(each[0]))
+        for by, legs in turns:
+            is_there = not side or (abs(by) > STRAIGHT_AHEAD and (by > 0) == (side == "left"))
+            if legs[-1].road != passage.departure.road and is_there:
+                kept, (rest, _) = around.s < passage.start - SPACING / 2, around.whole(legs[1:])
+                way = Way.through(np.vstack([path.points[kept, :3], rest.points[:, :3]]))
+                behind = way.stations[kept.sum() :]
+                beyond = passage.start + behind - behind[0]
+                met = float(behind[0]), passage.start
+                yield replace(way, meets=met, road_stations=np.r_[around.s[kept], beyond])
+
+
+WAYS: Mapping[str, tuple[Callable[[_Around], Iterator[Way | None]], str]] = {
+    "junction": (
+        _through_junction,
+        "junction after {near:.0f} m with a road from {side}, from which somebody who {does} meets the "
+        "tested car",
+    ),
+    "roundabout": (_on_ring, "roundabout after {near:.0f} m"),
+    "ramp": (_from_ramp, "ramp that joins its lane after {near:.0f} m; write for example merge main"),
+    "turn_off": (_turning_off, "junction after {near:.0f} m where somebody {where} can turn off"),
+}
+"""The ways of those at a place, or who turn off, the best ones first, and what is missing if there are none.
+"""
