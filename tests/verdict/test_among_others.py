@@ -19,8 +19,8 @@ from roadgpt.road import Limits, Profile, Road, World
 from roadgpt.run import Request, Run, Setup
 from roadgpt.traffic import Tracks
 from roadgpt.verdict import Cause, Incident, Verdict, judge
-from roadgpt.verdict.among_others import limits_along
 from roadgpt.verdict.contact import contacts_of
+from roadgpt.verdict.incidents import limits_at
 from staged import among, driven, straight, tracks
 from verdict.test_incidents import WORLD as ROUTE_WORLD
 from verdict.test_incidents import crossroads
@@ -313,7 +313,7 @@ def test_on_a_route_the_earliest_cause_is_first_and_limits_are_those_of_its_lane
     assert verdict.cause == "collision"
     assert "; 2 times in all; no stop at a stop sign once, after 47 m" in verdict.description
     far = among(drive, tracks(9.0, car_1=("car", straight(0, 300, 0, 0))))
-    limits = limits_along(route, far, ROUTE_WORLD)
+    limits = limits_at(route, ROUTE_WORLD, far["s"])
     assert set(limits) == {ROUTE_WORLD.limits.speed_limit}
     last = route.legs[-1].road
     slow = [
@@ -321,7 +321,7 @@ def test_on_a_route_the_earliest_cause_is_first_and_limits_are_those_of_its_lane
         for each in route.network.roads
     ]
     changed = Route.along(replace(route.network, roads=tuple(slow)), route.legs)
-    limits = limits_along(changed, far, ROUTE_WORLD)
+    limits = limits_at(changed, ROUTE_WORLD, far["s"])
     np.testing.assert_array_equal(limits == 5.0, far["s"] >= route.starts[-2])
     assert "speeding" in kinds(judge(changed, far, ROUTE_WORLD))
 

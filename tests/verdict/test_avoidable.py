@@ -171,6 +171,41 @@ def test_cut_ins_and_blows_from_behind() -> None:
     assert head_on.outcome == "UNAVOIDABLE"
 
 
+def brakes(rate: float, x: float = 100.0, v: float = 15.0) -> Any:
+    """Even motion at v, and after 3 s braking."""
+    return lambda time: (
+        x + v * time - rate * np.clip(time - 3.0, 0, v / rate) ** 2 / 2
+        - np.maximum(time - 3.0 - v / rate, 0) * v, LANE, 0
+    )  # fmt: skip
+
+
+def test_who_brakes_for_nothing_and_is_hit_from_behind() -> None:
+    """Somebody follows at 15 m and does not react. The way to a stop from 15 m/s with 3.5 m/s2, and of one
+    second more, is 47 m; the front is at 147 m then."""
+    follows = {"car_1": ("car", straight(80, LANE, 0, 15))}
+    bend = Road.through([[x, 0 if x < 170 else (x - 170) ** 2 / 120] for x in range(0, 261, 5)])
+    for rate, more, limit, avoidable in (
+        (6.0, {}, 60.0, True),
+        (4.0, {}, 60.0, True),
+        (3.0, {}, 60.0, False),  # as cruise control may
+        (6.0, {"van_1": ("van", straight(180, LANE, 0, 0))}, 60.0, False),
+        (6.0, {"van_1": ("van", straight(180, -LANE, 0, 0))}, 60.0, True),  # in the other lane
+        (6.0, {"van_1": ("van", straight(260, LANE, 0, 15))}, 60.0, True),  # far ahead
+        (6.0, {"adult_1": ("adult", straight(165, -8, np.pi / 2, 1.5))}, 60.0, False),  # walks into the way
+        (6.0, {"adult_1": ("adult", straight(165, -8, np.pi / 2, 0.0))}, 60.0, True),  # stands beside it
+        (6.0, {}, 10.0, False),
+    ):
+        found = verdict(scene(brakes(rate), **follows, **more), world(limit=limit))
+        assert found.first_contact is not None
+        assert (found.outcome, found.first_contact.face) == ("FAIL" if avoidable else "UNAVOIDABLE", "rear")
+        told = f"avoidable: it had braked with {rate:.1f} m/s2 and nothing in its way called for it"
+        assert found.description.endswith(told) == avoidable, (rate, more, limit)
+    faster = scene(brakes(6.0), car_1=("car", straight(71, LANE, 0, 18)))  # would have come anyway
+    assert verdict(faster).outcome == "UNAVOIDABLE"
+    drive = among(driven(brakes(6.0), 8.0, bend), tracks(8.0, **follows))
+    assert verdict(drive, road=bend).outcome == "UNAVOIDABLE"
+
+
 def test_a_cut_in_is_perceived_before_it_reaches_the_strip() -> None:
     """With 60 and 20 km/h, 30 m and 1 m/s sideways, the careful driver is just in time if it takes note 0.4 s
     after 0.375 m, and too late by far when the other reaches into its strip, after 2.17 of 4 m."""

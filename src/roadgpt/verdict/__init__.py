@@ -10,9 +10,9 @@ marking. Every verdict states how far outside its lane the car was, on the scale
 which share of the way, and whether the driver itself drove where the car failed.
 
 On a route through junctions a verdict also lists wrong turns, driving against the direction of the lane,
-tyres off the road, and stop signs that were passed without a stop (``roadgpt.verdict.incidents``). With
-others on the road it also lists collisions, each with whose fault it is, near misses, standing before a free
-way, and speeding (``roadgpt.verdict.among_others``); ``measure`` returns how critical a drive was.
+tyres off the road, and stop signs that were passed without a stop. With others on the road it also lists
+collisions, each with whose fault it is, near misses, standing before a free way, and speeding
+(``roadgpt.verdict.incidents``); ``measure`` returns how critical a drive was.
 """
 
 from importlib import import_module

@@ -23,10 +23,10 @@ from roadgpt.brief.visibility import visual_range, weather_drawn
 from roadgpt.drive.company import EYE, SPACING, in_sight
 from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y
 from roadgpt.traffic.following import AFTER_CONTACT
-from roadgpt.verdict.among_others import limits_along
 from roadgpt.verdict.careful import CAREFUL, DRIVERS, Driver, Moment, drive_on, stopping_distance
 from roadgpt.verdict.contact import CORNER, middles, separation
-from roadgpt.verdict.measures import ACROSS, ALONG, Line, driven_lane
+from roadgpt.verdict.incidents import OVER_BY, limits_at
+from roadgpt.verdict.measures import ACROSS, ALONG, Line, driven_lane, measure
 from roadgpt.verdict.verdict import PARTLY, Incident, percent
 
 if TYPE_CHECKING:
@@ -43,6 +43,10 @@ AHEAD = 300.0  # m of lane after the contact
 WANDERS, EVALUATED, SUDDEN = 0.375, 0.4, 5.0  # m, s, m/s^2
 TOWARDS = 0.05  # m/s sideways; tracks are rounded to a millimetre
 KEPT = 2.0  # s
+COMFORT, OVER, RECENT, SIDEWAYS = 3.5, 0.5, 3.0, 2.0
+"""ISO 15622: m/s^2, the hardest braking of cruise control; ours: the seconds over which it is measured, the
+seconds before the contact in which it counts, and the m/s^2 sideways above which a bend calls for it."""
+SOON = 4.0  # s, of a conflict time below which somebody calls for braking
 FRONTS = np.array(
     [[2.0, 2.0, 2.4, 3.33, 5.56, 8.33, 11.11, 13.89, 16.67], [1, 1, 1, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6]]
 )
@@ -64,9 +68,37 @@ def avoidance_of(
         said = f"{names} would have braked in time, a careful driver (UN R157) not"
     else:
         said = "no reference driver (careful driver, Reg157, FSM, RSS) could have avoided it"
-    if own := meeting.own_doing():
+    if own := meeting.own_doing() or _braked_for_nothing(road, drive, world, collision):
         return True, by, f"avoidable: it {own}" + f"; {said}" * bool(by)
     return bool(by), by, said
+
+
+def _braked_for_nothing(road: "Road", drive: "Drive", world: "World", collision: Incident) -> str:
+    """Returns how hard the tested car braked before it was hit from behind, in words; empty if it did not, if
+    it would have been hit anyway, or if something within its way to a stop may have called for it."""
+    measured, hit, end = measure(road, drive, world), collision.contact, collision.at_time
+    assert drive.others is not None
+    assert hit is not None
+    time = measured.time
+    speed, earlier = (np.interp(time - by, drive["time"], np.abs(drive["speed"])) for by in (0.0, OVER))
+    braking = (earlier - speed) / OVER
+    hard = np.flatnonzero((braking > COMFORT) & (time > end - RECENT) & (time <= end))
+    if hit.face != "rear" or not len(hard):
+        return ""
+    since, before = time[hard[0]] - OVER, earlier[hard[0]]
+    way, s = before**2 / (2 * COMFORT) + before, float(np.interp(since, drive["time"], drive["s"]))
+    ahead = np.linspace(s, min(s + way, road.length), int(way / ALONG) + 2)
+    others = [each.name != collision.other for each in drive.others.actors]
+    meets = ((measured.gap < way) | (measured.conflict < SOON))[:, others]
+    is_called = (
+        hit.other_speed > before + OVER_BY
+        or meets[(time >= since - 1.0) & (time <= end)].any()
+        or before > limits_at(road, world, ahead).min() + OVER_BY
+        or before**2 * np.abs(road.curvature(ahead)).max() > SIDEWAYS
+        or any(each.start < ahead[-1] and each.end > s for each in road.passages)
+    )
+    most = braking[hard].max()
+    return "" if is_called else f"had braked with {most:.1f} m/s2 and nothing in its way called for it"
 
 
 def _course(driver: Driver, meeting: "_Meeting") -> tuple[bool, str]:
@@ -151,7 +183,7 @@ class _Meeting:
         ways = [stopping_distance(speed) for speed in speeds]
         sight = _sight(way, self._eye(since), visual_range(scene, "lane")) - BEHIND
         self.recorded = np.interp(then, drive["time"], np.abs(drive["speed"]))
-        limit = np.interp(then, drive["time"], limits_along(road, drive, world))
+        limit = np.interp(then, drive["time"], limits_at(road, world, drive["s"]))
         self.free = np.minimum(self.recorded, np.minimum(limit, np.interp(sight, ways, speeds))).tolist()
         self.places = np.interp(then, self.when, self.run)
         self.first = float(self.places[0])

@@ -15,16 +15,8 @@ from roadgpt.verdict.oracle import EPSILON, consult, has_departed, is_outside, m
 from roadgpt.verdict.verdict import STANDS, Cause, Face, Incident, Outcome, Side, Verdict, percent
 
 if TYPE_CHECKING:
-    from roadgpt.drive import Drive
+    from roadgpt.drive import Drive, Ended
     from roadgpt.road import Road, World
-
-CAUSES: dict[str, Cause] = {
-    "out_of_lane": "out of lane",
-    "fell": "fell",
-    "stuck": "stuck",
-    "timeout": "timeout",
-    "collision": "collision",
-}
 
 INCIDENTS: dict[str, str] = {
     "out of lane": "out of its lane",
@@ -48,17 +40,11 @@ LEAST = 0.005  # m; smaller distances beyond a marking are not stated
 # falls has left the lane. The competition has neither signs, lights nor others on the road, so the words for
 # a collision are ours.
 SBFT: dict[Cause | None, str] = {
-    None: "Successful test",
-    "out of lane": "Car drove out of the lane",
-    "fell": "Car drove out of the lane",
+    **dict.fromkeys((None, "stop line", "red light", "failure to yield"), "Successful test"),
+    **dict.fromkeys(("out of lane", "fell", "wrong turn", "wrong way"), "Car drove out of the lane"),
     "stuck": "Car is not moving fast enough",
     "timeout": "Timeout Simulation",
     "collision": "Car collided",
-    "wrong turn": "Car drove out of the lane",
-    "wrong way": "Car drove out of the lane",
-    "stop line": "Successful test",
-    "red light": "Successful test",
-    "failure to yield": "Successful test",
 }
 
 FAILING: tuple[Cause, ...] = (
@@ -96,13 +82,13 @@ def judge(
     checks whether the car is at the goal, then whether it is stuck, then whether it is in its lane. The step
     at which the car reaches the goal or is stuck is therefore ignored for the margin and ``max_oob``.
 
-    On a route through junctions, ``incidents`` lists what the car did wrong, as defined in
+    On a route through junctions or among others, ``incidents`` lists what the car did wrong, as defined in
     ``roadgpt.verdict.incidents``. If the car kept its lane up to the goal, the first wrong turn, wrong way or
     missed stop is the failure. A tyre off the road is counted but fails no test.
 
-    With others on the road, ``incidents`` also lists what ``roadgpt.verdict.among_others`` defines. Then the
-    earliest of all failures is the cause, and a contact within 3 s is told in the same sentence. A collision
-    that no careful driver could have avoided, as ``roadgpt.verdict.avoidable`` defines it, is UNAVOIDABLE.
+    With others on the road, the earliest of all failures is the cause, and a contact within 3 s is told in
+    the same sentence. A collision that no careful driver could have avoided, as
+    ``roadgpt.verdict.avoidable`` defines it, is UNAVOIDABLE.
 
     ``known`` is the step that decides and the cause of failure, or None, if an earlier verdict has them;
     with others on the road they are found again.
@@ -112,16 +98,11 @@ def judge(
     """
     road = world.lay(road)
     incidents: tuple[Incident, ...] | None = None
-    if only_road(road, world) is None:
+    if only_road(road, world) is None or drive.others is not None:
         from roadgpt.verdict.incidents import incidents_of  # a single road does not need it
 
         incidents = incidents_of(road, drive, world)
-    if drive.others is not None:
-        from roadgpt.verdict.among_others import incidents_among_others
-
-        known = None
-        more = (*(incidents or ()), *incidents_among_others(road, drive, world))
-        incidents = tuple(sorted(more, key=lambda each: each.at_time))
+    known = known if drive.others is None else None
     step, cause = known or _first_failure(road, drive, world)
     if cause is None or drive.others is not None:
         step, cause = _first_of(incidents or (), drive, step, cause)
@@ -198,7 +179,10 @@ def _first_failure(road: "Road", drive: "Drive", world: "World") -> tuple[int, C
             f"the drive was ended with {drive['outside'][last]:.3f} of the car outside its lane, which "
             f"a tolerance of {world.limits.oob_tolerance:g} allows: drive the road again with this tolerance"
         )
-    return last, CAUSES.get(drive.ended)
+    causes: dict[Ended, Cause] = {
+        "fell": "fell", "stuck": "stuck", "timeout": "timeout", "collision": "collision",
+    }  # fmt: skip
+    return last, causes.get(drive.ended)
 
 
 def _first_of(
@@ -251,7 +235,7 @@ def _behind(road: "Road", drive: "Drive", world: "World") -> str:
     """Returns in words behind whom of a scene the car stayed at the end; empty if the way was free."""
     if drive.others is None or not world.scene.actors or world.scene.has_flow:
         return ""
-    from roadgpt.verdict.among_others import FREE
+    from roadgpt.verdict.incidents import FREE
     from roadgpt.verdict.measures import measure
 
     gaps = measure(road, drive, world).gap[-1]
