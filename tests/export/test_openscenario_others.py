@@ -88,7 +88,7 @@ def test_who_comes_late_and_who_leaves_is_added_and_deleted(written: tuple[Path,
 def test_what_was_written_is_replayed_as_it_was(written: tuple[Path, Tracks]) -> None:
     path, tracks = written
     found = read_recording(path)
-    assert "Ego is not replayed" in found.remarks[0]
+    assert "it is the tested car: Ego" in found.remarks[0]
     again = found.on(ROAD, WORLD)
     assert [(a.name, a.kind, a.size) for a in again.actors] == [
         (a.name, a.kind, pytest.approx(a.size)) for a in tracks.actors

@@ -62,14 +62,17 @@ def test_heights_are_those_of_the_road_and_who_stands_stays(tmp_path: Path) -> N
     [
         ("", "does not name the columns time, id, kind"),
         ("time,id,kind,x,y,speed\n", "columns heading"),
-        (f"{HEADER}\n0,a,tank,1,2,0,3", "'tank' is no kind; give one of car, van"),
+        (f"{HEADER}\n0,a,tank,1,2,0,3", "row 2: kind is 'tank'; give 'car', 'van'"),
         (f"{HEADER}\n{ROW}\n1,a,bus,1,2,0,3", "row 3: a is a bus and was a car"),
         (f"{HEADER}\n{ROW}\n0.0,a,car,1,2,0,3", "a has two rows at 0 s"),
         (f"{HEADER}\n0,a,car,nan,2,0,3", "row 2: x is 'nan'"),
         (f"{HEADER}\n0,a,car,1,2,0", "row 2: speed is ''"),
-        (f"{HEADER}\n0,,car,1,2,0,3", "row 2 has no id"),
-        (f"{HEADER},length\n{ROW},-1", "the box of a is -1"),
-        (f"{HEADER}\n0,Ego,car,1,2,0,3", "nobody in it can be replayed Ego is not replayed"),
+        (f"{HEADER}\n0,,car,1,2,0,3", "row 2: id is ''; give a text that is not empty"),
+        (f"{HEADER},length\n{ROW},-1", "row 2: length is '-1'; give more than 0"),
+        (
+            f"{HEADER}\n0,Ego,car,1,2,0,3",
+            "nobody in it can be replayed; not replayed, because it is the tested car: Ego",
+        ),
         (f"{HEADER}\n{ROW}\n1e6,a,car,1,2,0,3", "too many"),
     ],
 )
@@ -174,12 +177,12 @@ def test_what_is_not_understood_is_left_out_by_name(tmp_path: Path) -> None:
     found = read(tmp_path, text, "others.xosc")
     assert [actor.name for actor in found.actors] == ["stands", "dog"]
     (tested, left_out) = found.remarks
-    assert "Ego is not replayed" in tested
+    assert "it is the tested car: Ego" in tested
     for said in (
         "lane (a LanePosition)",
         "nowhere (without a place)",
         "changes (LaneChangeAction)",
-        "parameter (x of its WorldPosition is a parameter)",
+        "parameter (x of its WorldPosition is '$x')",
         "listed (its body is in a catalogue)",
     ):
         assert said in left_out

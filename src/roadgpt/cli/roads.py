@@ -195,11 +195,16 @@ def source_of(
     from roadgpt.network.source import OF_FILE, RoadSource, read_source
     from roadgpt.road import Road, World
 
+    scene = ""
     if (place := selection_of(file)) and place.number is not None:
         run = place.run()
         if run.road is None:
             raise UsageError(f"{file} has no road: {run.description}")
-        source = RoadSource(run.road, (), {name: run.world.values()[name] for name in OF_FILE}, file)
+        values = run.world.values()
+        scene, source = (
+            values["scene"],
+            RoadSource(run.road, (), {name: values[name] for name in OF_FILE}, file),
+        )
     elif Path(file).is_dir() and not Path(file, "road.json").is_file():
         raise UsageError(f"{file} is a folder without a road; give a road file, or the folder of a run")
     else:
@@ -207,6 +212,8 @@ def source_of(
     blueprint, remarks, stated, *_ = source
     context = click.get_current_context(silent=True)
     told = (typed(context) if context else set()) if told is None else told
+    if scene and "scene" not in told and context and "scene" in context.params:
+        remarks += (f"the scene of the run is left out; give it with --scene '{scene}'",)
     values, usual = world.values(), World().values()
     given = [each for each in WORLD if each.field in told or values.get(each.field) != usual.get(each.field)]
     own = [each.flag for each in given if each.field in LANES] if getattr(blueprint, "profile", None) else []

@@ -116,7 +116,7 @@ def save(
     return tuple(dict.fromkeys(written))
 
 
-def doubts(road: Road, formats: Sequence[str], world: World) -> tuple[str, ...]:
+def doubts(road: Road, formats: Sequence[str], world: World, poses: Poses | None = None) -> tuple[str, ...]:
     """Returns a sentence for each place of a road, and each property, that some of the formats cannot show
     rightly. An exporter may have ``lacks``, names of such properties, and a method ``doubts(road, world)``.
     """
@@ -131,6 +131,7 @@ def doubts(road: Road, formats: Sequence[str], world: World) -> tuple[str, ...]:
         "heights": bool(np.any(road.sample().grade)),
         "superelevation": profile.superelevation_angle is not None,
         "changes of width": any(isinstance(width, CubicProfile) for width in widths),
+        "others on the road": poses is not None and poses.others is not None,
     }
     for part in map(exporter_of, formats):
         said += [f"{part.name}: {what} left out" for what in getattr(part, "lacks", ()) if there[what]]

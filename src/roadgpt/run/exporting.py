@@ -29,7 +29,7 @@ def export(
     if run.drive is not None and poses is not None and run.drive.lights:
         poses = replace(poses, lights=_lights(run.road, run.drive, run.world))
     written = save(run.road, folder, formats, run.world, name, poses)
-    for said in doubts(run.road, formats, run.world):
+    for said in doubts(run.road, formats, run.world, poses):
         tell(said)
     return written
 

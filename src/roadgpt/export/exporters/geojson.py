@@ -26,6 +26,7 @@ class GeoJson:
     name = "geojson"
     suffix = ".geojson"
     holds_junctions = True
+    lacks = ("others on the road",)
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes one feature collection.

@@ -92,6 +92,7 @@ class Gltf:
 
     name = "gltf"
     suffix = ".glb"
+    lacks = ("others on the road",)
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the scene.

@@ -6,7 +6,7 @@ on the ground. Angles are right-handed, so pitch is positive nose down (ISO 8855
 
 import math
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from statistics import mean
@@ -29,32 +29,17 @@ from roadgpt.export.ego import (
 from roadgpt.export.exporters.opendrive import OpenDrive
 from roadgpt.export.exporters.opendrive.signals import Signals
 from roadgpt.export.markup import Value, XmlElement
+from roadgpt.export.moves import BODIES, EGO, key_of, while_moving
 from roadgpt.geometry.curve import Array
 from roadgpt.network import RoadEnd, legs_of, network_of, only_road
 from roadgpt.road import Road, World
 
-EGO = "Ego"
 DATE = "2026-01-01T00:00:00"  # the same in every file, so that the same road gives the same bytes; midnight
 MIDNIGHT = -0.5  # rad, elevation of the sun at night, well below that of any twilight
 KEPT = 0.02  # m/s, or s: tolerance of the simplified speeds
 PATIENCE = 60.0  # s beyond the planned duration, after which a player stops
 STANDS = 0.01  # m; a car that has moved less is taken as standing
 DECIMALS = 6
-BODIES = {
-    "car": ("Vehicle", "car", 1700),
-    "van": ("Vehicle", "van", 2500),
-    "truck": ("Vehicle", "truck", 16000),
-    "bus": ("Vehicle", "bus", 13000),
-    "motorcycle": ("Vehicle", "motorbike", 280),
-    "bicycle": ("Vehicle", "bicycle", 90),
-    "adult": ("Pedestrian", "pedestrian", 75),
-    "child": ("Pedestrian", "pedestrian", 22),
-    "animal": ("Pedestrian", "animal", 25),
-    "cones": ("MiscObject", "obstacle", 5),
-    "barrier": ("MiscObject", "barrier", 500),
-    "lost_load": ("MiscObject", "obstacle", 20),
-}
-"""Body, category and a typical mass in kg, riders included, of each kind of actor."""
 NEAR, LASTS = 0.1, 0.1  # m and s; who stays within this distance for this time creeps or rests
 EVENLY = 0.01  # m, from where it would be if it moved evenly meanwhile
 REAR, FRONT = -0.3, 0.3  # usual places of axles as shares of a vehicle's length, from its middle
@@ -244,10 +229,8 @@ def _reference(states: Array, ahead: float) -> Array:
     pitch = np.zeros(len(states))
     if len(states) > 1:
         along = np.gradient(x) * c + np.gradient(y) * s
-        moves = np.flatnonzero(np.abs(along) > STANDS)
-        if len(moves):
-            following = np.searchsorted(moves, np.arange(len(states))).clip(max=len(moves) - 1)
-            pitch = -np.arctan2(np.gradient(z) * np.sign(along), np.abs(along))[moves[following]]
+        falls = -np.arctan2(np.gradient(z) * np.sign(along), np.abs(along))
+        pitch = while_moving(falls, np.abs(along) > STANDS)
     back = ahead * np.cos(pitch)
     columns = x - back * c, y - back * s, z + ahead * np.sin(pitch), heading, pitch, np.zeros(len(states))
     return np.asarray(np.round(np.column_stack(columns), DECIMALS) + 0.0, float)
@@ -328,9 +311,17 @@ def _frame(
     root.add("CatalogLocations")
     root.add("RoadNetwork").add("LogicFile", {"filepath": map_})
     entities = root.add("Entities")
-    entities.add("ScenarioObject", {"name": EGO}).extended(_vehicle())
+    size, rear = (CAR.length, CAR.width, CAR.height), CAR.rear_axle
+    axles = CAR.front_axle - rear, CAR.track
+    saloon = _body("saloon", ("Vehicle", "car", CAR.mass), size, CAR.middle - rear, axles, 7.0)
+    entities.add("ScenarioObject", {"name": EGO}).extended(saloon)
     for other in others:
-        entities.add("ScenarioObject", {"name": other.name}).extended(_body(other))
+        length, width, _ = (round(float(value), 3) for value in other.size)
+        axles = (FRONT - REAR) * length, 0.85 * width
+        body = _body(other.kind, BODIES[other.kind], other.size, other.ahead, axles)
+        # in esmini, angles else change only near the vertices
+        body.children[-1].add("Property", {"name": "plineInterpolation", "value": "segment"})
+        entities.add("ScenarioObject", {"name": other.name}).extended(body)
     board = root.add("Storyboard")
     actions = board.add("Init").add("Actions")
     _environment(actions.add("GlobalAction").add("EnvironmentAction"), road, world)
@@ -359,40 +350,29 @@ def _environment(action: XmlElement, road: Road, world: World) -> None:
         weather.add("Precipitation", rain)
 
 
-def _vehicle() -> XmlElement:
-    out = XmlElement("Vehicle", {"name": "saloon", "vehicleCategory": "car", "mass": CAR.mass})
+def _body(
+    name: str,
+    what: tuple[str, str, float],
+    size: Iterable[float],
+    middle: float,
+    axles: tuple[float, float],
+    pull: float = 10.0,
+) -> XmlElement:
+    """Returns a body with its origin on the ground, at the middle of a vehicle's rear axle, from which the
+    middle of the box is ``middle`` metres ahead. ``axles`` are their distance and their width."""
+    body, category, mass = what
+    length, width, height = (round(float(value), 3) for value in size)
+    out = XmlElement(body, {"name": name, key_of(body): category, "mass": mass})
     box = out.add("BoundingBox")
-    box.add("Center", {"x": round(CAR.middle - CAR.rear_axle, 3), "y": 0, "z": CAR.height / 2})
-    box.add("Dimensions", {"width": CAR.width, "length": CAR.length, "height": CAR.height})
-    out.add("Performance", {"maxSpeed": 70, "maxAcceleration": 7, "maxDeceleration": 10})
-    axles = out.add("Axles")
-    each = {"wheelDiameter": CAR.wheel, "trackWidth": CAR.track, "positionZ": CAR.wheel / 2}
-    ahead = round(CAR.front_axle - CAR.rear_axle, 3)
-    axles.add("FrontAxle", {"maxSteering": CAR.lock, **each, "positionX": ahead})
-    axles.add("RearAxle", {"maxSteering": 0, **each, "positionX": 0})
-    out.add("Properties")
-    return out
-
-
-def _body(other: Moved) -> XmlElement:
-    """Returns the body of somebody else on the road; its origin is the middle of a vehicle's rear axle, or of
-    the box, on the ground."""
-    body, category, mass = BODIES[other.kind]
-    length, width, height = (round(float(value), 3) for value in other.size)
-    key = f"{body[0].lower()}{body[1:]}Category"
-    out = XmlElement(body, {"name": other.kind, key: category, "mass": mass})
-    box = out.add("BoundingBox")
-    box.add("Center", {"x": round(other.ahead, 6), "y": 0, "z": round(height / 2, 6)})
+    box.add("Center", {"x": round(middle, 6), "y": 0, "z": round(height / 2, 6)})
     box.add("Dimensions", {"width": width, "length": length, "height": height})
     if body == "Vehicle":
-        out.add("Performance", {"maxSpeed": 70, "maxAcceleration": 10, "maxDeceleration": 10})
-        axles = out.add("Axles")
-        each = {"wheelDiameter": CAR.wheel, "trackWidth": round(0.85 * width, 6), "positionZ": CAR.wheel / 2}
-        ahead = round((FRONT - REAR) * length, 6)
-        axles.add("FrontAxle", {"maxSteering": CAR.lock, **each, "positionX": ahead})
-        axles.add("RearAxle", {"maxSteering": 0, **each, "positionX": 0})
-    # in esmini, angles else change only near the vertices
-    out.add("Properties").add("Property", {"name": "plineInterpolation", "value": "segment"})
+        out.add("Performance", {"maxSpeed": 70, "maxAcceleration": pull, "maxDeceleration": 10})
+        both, (ahead, across) = out.add("Axles"), axles
+        each = {"wheelDiameter": CAR.wheel, "trackWidth": round(across, 6), "positionZ": CAR.wheel / 2}
+        both.add("FrontAxle", {"maxSteering": CAR.lock, **each, "positionX": round(ahead, 6)})
+        both.add("RearAxle", {"maxSteering": 0, **each, "positionX": 0})
+    out.add("Properties")
     return out
 
 
