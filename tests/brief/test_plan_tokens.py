@@ -1,6 +1,7 @@
 """Tokens of change requests and refusals: what the network may write can be read, and nothing gets lost."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from roadgpt.brief.readers.model.grammar import END, PlanAutomaton
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, plan_of
 from roadgpt.brief.refusal import refused
+from roadgpt.errors import EditError
 from roadgpt_training.tokens import tokens_of
 from tables import rows as table_rows
 
@@ -57,7 +59,13 @@ def test_whatever_the_network_may_write_of_changes_can_be_read(
     if line.startswith("!"):
         assert "has no refusal" not in str(refused(line))
     elif line and is_change:
-        assert normal(normal(line)) == normal(line)
+        try:
+            read = normal(line)
+        except EditError as error:  # what a place must be for a wish is no matter of grammar
+            if not re.search("which part climbs|only the whole road", str(error)):
+                raise
+        else:
+            assert normal(read) == read
 
 
 @pytest.mark.parametrize(("line", "text", "again"), table_rows(__file__, "amounts_changes_copied"))

@@ -459,10 +459,13 @@ def _wish(numbers: Numbers) -> Symbol:
     slope = values["slope"]
     values["slope"] = any_of(sequel(one_of("up", "down"), in_order(slope)), one_of("flat", *STEEPNESS), slope)
     shape = in_order(one_of(*(kind for kind in KINDS if kind not in NOUNS)), SHARPNESS, least=1)
+    whole = (number for number in numbers.of("x") if value_of(number, numbers.slots) in range(1, 1000))
+    count = one_of(*whole)
+    counted = any_of(sequel(one_of(BOUND), count), sequel(count, one_of(BOUND, may_be_empty=True)))
     return any_of(
         *(sequel(one_of(name), value) for name, value in values.items()),
         sequel(one_of("climb"), _climb(numbers)),
-        numbers.keyed("x"),
+        sequel(one_of("x"), counted),
         _position(like, MOVES),
         sequel(one_of("side"), one_of(*SIDES, "other")),
         sequel(one_of("shape"), shape),

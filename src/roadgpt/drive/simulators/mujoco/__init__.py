@@ -34,6 +34,7 @@ _SEEN = itemgetter(
 
 
 EASY = 3.0  # m/s^2, with which a car slows down for a bend, and that it takes sideways there
+CALM = 2.0  # m/s^2, with which it stops before a junction
 
 
 def _first_speed(road: "Road", world: "World", start: float, box: Box) -> float:
@@ -46,7 +47,7 @@ def _first_speed(road: "Road", world: "World", start: float, box: Box) -> float:
     front = start + box.ahead + box.length / 2
     stops = [way for way in road.passages if way.control != "priority" and way.entered.kind not in RAMPS]
     lines = [way.line - front for way in stops if way.line > front]
-    speed = min([speed, *(math.sqrt(2 * EASY * away) for away in lines)])
+    speed = min([speed, *(math.sqrt(2 * CALM * away) for away in lines)])
     away = np.arange(0.0, min(speed**2 / 2 / EASY, road.length - start), 1.0)
     bends = np.abs(road.curvature(start + away))
     return float(np.sqrt((EASY / np.maximum(bends, 1e-6) + 2 * EASY * away).min(initial=speed**2)))
