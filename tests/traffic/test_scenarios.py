@@ -91,6 +91,20 @@ def test_each_is_a_scene_and_what_the_command_line_takes_is_what_it_tells(name: 
     assert [*map(str, chosen(str(faster)))] == [str(faster)]
 
 
+def test_a_grid_keeps_what_was_given_and_its_points_are_read_back_as_they_are() -> None:
+    fixed = scenario("r157:cut_in ego=60 lane=left gap=20 acceleration=0")
+    assert str(fixed) == "r157:cut_in ego=60 lane=left gap=20 acceleration=0"
+    found = [each.values for each in fixed.points("standard", True)]
+    assert len(found) == 5 * 5 * 6  # models, slower by, lateral speeds
+    assert {(each["ego"], each["lane"], each["gap"], each["acceleration"]) for each in found} == {
+        (60, "left", 20, 0)
+    }
+    for one in scenarios().values():
+        every = [*one.points("standard", True)]
+        for point in every[:: len(every) // 5 or 1]:
+            assert scenario(str(point)).values == point.values
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [

@@ -54,10 +54,15 @@ class Scenario(NamedTuple):
     grid: tuple[Mapping[str, tuple[Value, ...]], ...]
     """The standard grid: blocks, each a product of its lists."""
     values: Mapping[str, Value]
+    given: tuple[str, ...] = ()
+    """The parameters that were given a value, which a grid leaves as they are."""
 
     def __str__(self) -> str:
-        given = {name: value for name, value in self.values.items() if value != self.parameters[name][0]}
-        return " ".join([self.name, *(f"{name}={_text(value)}" for name, value in given.items())])
+        told = self.name
+        for name, value in self.values.items():
+            if name in self.given or value != self.parameters[name][0]:
+                told += f" {name}={_text(value)}"
+        return told
 
     @property
     def scene_text(self) -> str:
@@ -88,13 +93,12 @@ class Scenario(NamedTuple):
         return Scene(**fields)
 
     def points(self, grid: Grid, with_road: bool) -> "Iterator[Scenario]":
-        """Yields the scenario itself, or with the values of all points of its standard grid that this one
-        leaves at the nominal ones; without ``with_road`` none that differ only in their nominal road."""
-        fixed = {name for name, value in self.values.items() if value != self.parameters[name][0]}
+        """Yields the scenario itself, or with the values of all points of its standard grid, but for those
+        that were given; without ``with_road`` none that differ only in their nominal road."""
+        fixed = {*self.given, *([] if with_road else ["road"])}
         seen = set[str]()
         for block in self.grid if grid == "standard" else ({},):
             lists = {name: each for name, each in block.items() if name not in fixed}
-            lists = {name: each for name, each in lists.items() if with_road or name != "road"}
             for values in product(*lists.values()):
                 point = self._replace(values={**self.values, **dict(zip(lists, values, strict=True))})
                 if str(point) not in seen:
@@ -122,11 +126,11 @@ class Scenario(NamedTuple):
             )
             if text not in words:
                 raise UsageError(f"'{name}' of {self.name} is {' or '.join(words)}, not '{text[:40]}'")
-            return self._replace(values={**self.values, name: text})
         try:
-            return self._replace(values={**self.values, name: float(text)})
+            value = text if isinstance(usual, str) else float(text)
         except ValueError:
             raise UsageError(f"'{name}' of {self.name} is a number, {unit}; not '{text[:40]}'") from None
+        return self._replace(values={**self.values, name: value}, given=(*self.given, name))
 
 
 def _computed(node: ast.expr, names: Mapping[str, Value]) -> Any:

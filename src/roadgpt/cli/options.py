@@ -347,7 +347,7 @@ def scene(value: str) -> str:
 
 
 def scenario(value: str) -> str:
-    """Returns the name of a scenario with the parameters that differ from its own."""
+    """Returns the name of a scenario with the parameters that are given."""
     from roadgpt.brief.scenarios import scenario as of_catalogue
 
     return str(of_catalogue(value)) if value else ""
