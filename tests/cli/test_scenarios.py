@@ -81,9 +81,13 @@ def read_run_again(folder: str, number: int) -> str:
 
 
 def test_a_plan_of_a_campaign_has_the_points_of_a_standard_grid() -> None:
+    cut_in = "r157:cut_in ego=20 model=car lane=left gap=60 lateral_speed=3 acceleration=0"
     Path("p.toml").write_text(
-        'drive = false\ntests = 4\nsettings = { scenario = "r157:free_driving", grid = "standard" }\n'
+        "drive = false\ntests = 4\n"
+        f'settings = {{ scenario = "r157:free_driving, {cut_in}", grid = "standard" }}\n'
     )
-    roadgpt("campaign", "p.toml", "--out", "c", "-q")
+    said = roadgpt("campaign", "p.toml", "--out", "c").output
+    assert "14 points" in said  # 12, and two of five cut-ins that are slower than 20 km/h by 10 to 50 km/h
+    assert "3 that lead to speeds below 0 are left out" in said
     origins = [row["origin"] for row in csv.DictReader(Path("c/results.csv").read_text().splitlines())]
     assert origins == [f"r157:free_driving ego={speed}" for speed in (5, 10, 15, 20)]

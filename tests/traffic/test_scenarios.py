@@ -14,7 +14,7 @@ import pytest
 
 from outside_judge import SHARED
 from roadgpt.brief.plan import read_plan
-from roadgpt.brief.scenarios import LANE_WIDTH, chosen, scenario, scenarios
+from roadgpt.brief.scenarios import LANE_WIDTH, chosen, points_of, scenario, scenarios
 from roadgpt.brief.scene import Scene
 from roadgpt.brief.scene_fit import fitted
 from roadgpt.errors import UsageError
@@ -105,6 +105,15 @@ def test_a_grid_keeps_what_was_given_and_its_points_are_read_back_as_they_are() 
             assert scenario(str(point)).values == point.values
 
 
+def test_points_of_a_grid_with_speeds_below_0_are_left_out() -> None:
+    every = points(BY_NAME["r157:cut_in"]["grid"], set())
+    slow = [(ego, less) for ego in range(20, 70, 10) for less in range(10, 60, 10) if ego < less]
+    found, left_out = points_of("r157:cut_in", "standard", True)
+    assert left_out == every * len(slow) // 25
+    assert len(found) == every - left_out
+    assert min(float(each.values["ego"]) - float(each.values["slower"]) for each in found) == 0
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -114,6 +123,7 @@ def test_a_grid_keeps_what_was_given_and_its_points_are_read_back_as_they_are() 
         ("r157:cut_in gap=far", "'gap' of r157:cut_in is a number"),
         ("r157:cut_in lane=up", "left"),
         ("r157:cut_in slower=70", "from 0 to 250"),
+        ("r157:cut_in ego=20 slower=50", "^r157:cut_in: ego=20 slower=50 lead to a speed of -30 km/h"),
         ("ncap:CPLA target=0", "divided by 0"),
         ("r157:cut_in gap", "write for example"),
         ("ncap:*", "name one"),

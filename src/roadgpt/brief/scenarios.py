@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 from roadgpt.brief.plan import read_scene
-from roadgpt.brief.scene import Scene
+from roadgpt.brief.scene import NUMBERS, Scene
 from roadgpt.errors import BriefError, UsageError
 from roadgpt.reading import read_text
 
@@ -34,6 +34,7 @@ FUNCTIONS: Mapping[str, Callable[..., Any]] = {
     "side": lambda offset: "left" if offset > 0 else "right",
 }
 """What formulas can have besides numbers, parameters and a minus. Left is positive."""
+FORMULA, SPEEDS = re.compile(r"\{(.+?)\}"), re.compile(r"(?:\bv=|\bto=|\bspeed )(\{.+?\})")
 TABLE: dict[str, Any] = tomllib.loads(read_text(Path(__file__).with_name("scenarios.toml")))
 WORDS: Mapping[str, str] = TABLE.pop("words")
 ROADS: Mapping[str, str] = TABLE.pop("roads")
@@ -77,6 +78,8 @@ class Scenario(NamedTuple):
     def onto(self, other: Scene) -> Scene:
         """Returns the scene together with another one, such as its traffic and weather. Raises UsageError if
         the values are no scene, or both say something else of one thing."""
+        if self.fault:
+            raise UsageError(self.fault)
         try:
             own = read_scene(self.scene_text)
         except (BriefError, ZeroDivisionError) as error:
@@ -105,12 +108,21 @@ class Scenario(NamedTuple):
                     seen.add(str(point))
                     yield point
 
+    @property
+    def fault(self) -> str:
+        """A sentence about a speed that nobody can have, or else nothing."""
+        _, least, most, *_ = NUMBERS["speed"]
+        for formula in SPEEDS.findall(self.scene):
+            if not least <= float(speed := self._filled(formula)) <= most:
+                named = [name for name in self.values if re.search(rf"\b{name}\b", formula)]
+                given = " ".join(f"{name}={_text(self.values[name])}" for name in named)
+                said = f"{self.name}: {given} lead{'s' * (len(named) == 1)} to a speed of {speed} km/h"
+                return f"{said}; speeds are from {least} to {most}"
+        return ""
+
     def _filled(self, template: str) -> str:
         names = {name: WORDS.get(str(value), value) for name, value in self.values.items()}
-        formula = re.compile(r"\{(.+?)\}")
-        return formula.sub(
-            lambda found: _text(_computed(ast.parse(found[1], mode="eval").body, names)), template
-        )
+        return FORMULA.sub(lambda found: _text(_computed(_parsed(found[1]).body, names)), template)
 
     def with_value(self, name: str, text: str) -> "Scenario":
         """Returns the scenario with another value of a parameter."""
@@ -131,6 +143,11 @@ class Scenario(NamedTuple):
         except ValueError:
             raise UsageError(f"'{name}' of {self.name} is a number, {unit}; not '{text[:40]}'") from None
         return self._replace(values={**self.values, name: value}, given=(*self.given, name))
+
+
+@cache
+def _parsed(formula: str) -> ast.Expression:
+    return ast.parse(formula, mode="eval")
 
 
 def _computed(node: ast.expr, names: Mapping[str, Value]) -> Any:
@@ -196,6 +213,14 @@ def chosen(text: str) -> list[Scenario]:
     if not found:
         raise UsageError("no scenario is named; roadgpt scenarios lists them")
     return [*found.values()]
+
+
+def points_of(text: str, grid: Grid, with_road: bool) -> tuple[list[Scenario], int]:
+    """Returns the points of the scenarios that a text names, and how many are left out because they lead to
+    speeds below 0, which the grids of their sources exclude."""
+    every = [point for each in chosen(text) for point in each.points(grid, with_road)]
+    found = [point for point in every if not point.fault]
+    return found, len(every) - len(found)
 
 
 def scenario(text: str) -> Scenario:

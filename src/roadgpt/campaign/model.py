@@ -8,7 +8,7 @@ from pydantic import Field
 
 from roadgpt.brief.model import Brief, Frozen
 from roadgpt.brief.plan import read_plan
-from roadgpt.brief.scenarios import LANE_WIDTH, Scenario, chosen, scenario
+from roadgpt.brief.scenarios import LANE_WIDTH, Scenario, points_of, scenario
 from roadgpt.road import Design, World
 from roadgpt.run.model import Outcome, Request
 from roadgpt.verdict.verdict import Cause, Side
@@ -153,11 +153,13 @@ class Cell:
     earlier ones, as in ``roadgpt run``."""
 
     @property
-    def points(self) -> list[Scenario]:
-        """The scenarios of its tests, with the values of their parameters; none if it does not test any."""
-        named = chosen(self.settings["scenario"]) if "scenario" in self.settings else []
+    def points(self) -> tuple[list[Scenario], int]:
+        """The scenarios of its tests, with the values of their parameters, and how many points of their grids
+        are left out; none if it does not test any."""
+        if "scenario" not in self.settings:
+            return [], 0
         grid = self.settings.get("grid", "nominal")
-        return [point for each in named for point in each.points(grid, not self.request.words)]
+        return points_of(self.settings["scenario"], grid, not self.request.words)
 
     def of_test(self, proposal: Proposal) -> "Cell":
         """Returns the settings of one test: where scenarios are tested, its own is that of the proposal, and

@@ -12,7 +12,7 @@ class Words:
     batch_size = 16
 
     def __init__(self, cell: Cell) -> None:
-        self._seed, self._points = cell.request.seed, cell.points
+        self._seed, self._points = cell.request.seed, cell.points[0]
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
         """Returns n proposals without a design: the workers design the roads. They are equal, but for the

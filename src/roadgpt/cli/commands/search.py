@@ -364,7 +364,7 @@ OF_DESIGN = {"words", "goal", "generator", "is_plan", "reader", "designer"}
 
 def _described(ctx: click.Context, text: str, rest: dict[str, Any]) -> "tuple[Plan, Set[str]]":
     """Returns the plan of a description or of given roads, and the fields of the World that were typed."""
-    from roadgpt.brief.scenarios import chosen
+    from roadgpt.brief.scenarios import points_of
     from roadgpt.campaign.model import WITH_GOAL, WITHOUT_GOAL, CellBudget
     from roadgpt.campaign.plan import Plan
 
@@ -384,9 +384,7 @@ def _described(ctx: click.Context, text: str, rest: dict[str, Any]) -> "tuple[Pl
                 "--scenario is for roads of a description; leave --goal, --on and --generator out"
             )
         settings = {"scenario": rest["scenarios"], "grid": rest["grid"]}
-        tests = tests or sum(
-            1 for each in chosen(rest["scenarios"]) for _ in each.points(rest["grid"], not text)
-        )
+        tests = tests or len(points_of(rest["scenarios"], rest["grid"], not text)[0])
     rest["reader"] = options.reader_of(rest)
     rest["generator"] = rest["generator"] or (WITH_GOAL if rest["goal"] else WITHOUT_GOAL)
     lists = {f"{name}s": (rest[name],) for name in ("designer", "simulator", "generator", "seed")}
@@ -476,8 +474,10 @@ def _tell(out: Path, plan: "Plan", was_there: bool) -> None:
         told += f"; the first {tests:,} are tested" * (tests < count)
         told += f"; {tests:,} tests, so roads are driven again with other seeds" * (tests > count)
         click.echo(told)
-    if points := cells[0].points:
+    points, left_out = cells[0].points
+    if points:
         where = "on the roads of the description" if cells[0].request.words else "each on its nominal road"
+        where += f"; {left_out:,} that lead to speeds below 0 are left out" * bool(left_out)
         click.echo(f"{plural(len(points), 'point')} of {plan.settings['scenario']}, {where}")
     if len(cells) > 1:
         what = "the same roads for each driver" if plan.paired else "each with tests of its own"
