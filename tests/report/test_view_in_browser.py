@@ -264,7 +264,7 @@ def test_plates_stay_in_the_picture_and_do_not_cover_each_other(
     path.write_text(view.page_of([made]), encoding="utf-8")
     boxes = """['.stage .scene', '.plate'].map(name => [...document.querySelectorAll(name)].map(each =>
         (r => [r.left, r.top, r.right, r.bottom])(each.getBoundingClientRect())))"""
-    for wide, high, is_phone in ((1000, 700, False), (390, 844, True)):
+    for wide, high, is_phone in ((700, 490, False), (390, 844, True)):
         tab.size(wide, high, is_phone)
         tab.open(path)
         for camera in ("behind", "free"):
@@ -407,7 +407,7 @@ def test_the_others_stand_and_move_where_the_drive_has_them(tab: BrowserTab, tmp
     states[:, 0, 4] = 2.0
     others = Tracks(tuple(actors), states)
     path = view.write([replace(run, drive=replace(run.drive, others=others))], tmp_path / "others.html")
-    tab.size(1200, 800)
+    tab.size(600, 420)
     tab.open(path)
     tab.run("roadgpt.player.moveTo(1.25)")
     tab.wait_for("!roadgpt.player.isPlaying && roadgpt.others[0].length > 0")
@@ -426,8 +426,7 @@ def test_weather_is_seen_on_the_page_and_fades_with_distance(tab: BrowserTab, tm
     for text in ("medium", "fog 40", "rain 30", "night", "low_sun"):
         run = prove(design(), 7, World().changed(scene=text), Setup(drives=False))
         path = view.write([replace(run, source="a road")], tmp_path / "weather.html")
-        tab.open(path)
-        tab.run("roadgpt.player.moveTo(0.5); roadgpt.player.choose('bonnet')")
+        tab.open(path, "#t=0.5&camera=bonnet")
         seen[text] = tab.picture(".stage .scene")[..., :3]
         assert_quiet(tab, path)
         assert ("visual range of 40" in tab.run("document.querySelector('.origin').textContent")) == (
@@ -467,7 +466,7 @@ def test_the_time_line_and_the_contact(tab: BrowserTab, tmp_path: Path) -> None:
         description=verdict.description,
     )  # fmt: skip
     path = view.write([run], tmp_path / "contact.html")
-    tab.size(1200, 800)
+    tab.size(820, 580)
     tab.open(path)
     assert tab.run("document.querySelector('.slide b').textContent") == "contact"
     tab.run("document.querySelector('button.contact').click()")
