@@ -86,7 +86,7 @@ class BrowserTab:
             self.loads += 1
 
     def size(self, wide: int, high: int, is_phone: bool = False) -> None:
-        """The size of the window, CSS pixels, each of them half a pixel of the picture in either direction."""
+        """The size of the window, CSS pixels; two of them are one of a picture, which is drawn sooner."""
         self.send(
             "Emulation.setDeviceMetricsOverride",
             width=wide, height=high, deviceScaleFactor=0.5, mobile=is_phone,
