@@ -2,13 +2,14 @@
 
 import os
 import shutil
-import subprocess
 import sys
+import warnings
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -48,8 +49,10 @@ def asam_says(file: Path) -> tuple[list[str], dict[str, int]]:
         '<CheckerBundle application="xoscBundle">'
         f'<Param name="resultFile" value={quoteattr(str(result))}/></CheckerBundle></Config>'
     )
-    checker = [sys.executable, "-W", "ignore", "-m", "qc_openscenario.main", "-c", str(settings)]
-    subprocess.run(checker, capture_output=True, check=True)
+    with warnings.catch_warnings(action="ignore"), patch.object(sys, "argv", ["", "-c", str(settings)]):
+        from qc_openscenario.main import main
+
+        main()
     root = ET.parse(result).getroot()
     ends = [checker.get("status", "") for checker in root.iter("Checker")]
     issues = [f"{issue.get('ruleUID')}: {issue.get('description')}" for issue in root.iter("Issue")]

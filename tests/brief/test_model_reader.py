@@ -2,7 +2,6 @@
 
 import json
 import shutil
-import zlib
 from hashlib import sha256
 from itertools import islice
 from pathlib import Path
@@ -21,7 +20,7 @@ from roadgpt_training.generator import pairs
 from tables import rows
 
 READER = ModelReader()
-MOST_MEGABYTES = 60  # in the wheel, which is compressed
+MOST_MEGABYTES = 60
 
 
 @pytest.mark.parametrize(
@@ -77,7 +76,7 @@ def test_a_vague_wish_has_several_readings() -> None:
 
 def test_the_weights_are_small_and_come_with_their_notice() -> None:
     files = [path for path in WEIGHTS.iterdir() if path.is_file()]
-    assert sum(len(zlib.compress(path.read_bytes(), 1)) for path in files) < MOST_MEGABYTES * 1e6
+    assert sum(path.stat().st_size for path in files) < MOST_MEGABYTES * 1e6
     assert "Apache-2.0" in (WEIGHTS / "NOTICE").read_text(encoding="utf-8")
     sums = json.loads((WEIGHTS / "sums.json").read_text(encoding="utf-8"))
     graphs = {f"{part}{name}.onnx" for part in ("encoder", "decoder") for name in ("", "_routes")}
@@ -108,7 +107,7 @@ def test_damaged_weights_are_refused_in_a_sentence(tmp_path: Path, name: str) ->
 
 def test_sentences_of_usual_briefs_are_read_back() -> None:
     missed = []
-    plans = [pair.plan for pair in islice(pairs(2026), 60) if not pair.plan.startswith("!")]
+    plans = [pair.plan for pair in islice(pairs(2026), 30) if not pair.plan.startswith("!")]
     for line in plans:
         wanted = normal(read_plan(line))
         try:

@@ -167,7 +167,7 @@ def test_two_lane_changes_are_as_far_apart_as_asked(
 @pytest.mark.parametrize("line", [line for (line,) in rows(__file__, "routes_past_ramps_are_as_asked")])
 def test_routes_past_ramps_are_as_asked(line: str) -> None:
     brief = read_plan(line)
-    world = world_for(brief, World(limits=Limits(speed_limit=100 / 3.6)))
+    world = World(limits=Limits(speed_limit=100 / 3.6), site=Site(map_size=1350))
     assert inspect(build_route(draft(brief, world, seed=1), world), brief, world) == ()
 
 

@@ -20,7 +20,7 @@ def saved(
     return read_gltf(file)
 
 
-@pytest.mark.parametrize("name", ROADS)
+@pytest.mark.parametrize("name", ["arcs", "short", "far away"])
 def test_slabs_are_closed_half_a_metre_thick_and_where_the_road_is(tmp_path: Path, name: str) -> None:
     road = ROADS[name]
     found = saved(road, tmp_path)
@@ -103,7 +103,7 @@ def heights_of(ground: trimesh.Trimesh, points: np.ndarray) -> np.ndarray:
     return found
 
 
-@pytest.mark.parametrize("name", ROADS)
+@pytest.mark.parametrize("name", ["arcs", "short", "far away"])
 def test_the_ground_lies_around_the_road_and_never_covers_it(tmp_path: Path, name: str) -> None:
     road = ROADS[name]
     ground = saved(road, tmp_path)["ground"]

@@ -30,7 +30,7 @@ FLIP = np.array([1.0, -1.0, 1.0])
 EXACT = 1e-9  # m
 ROUNDED = 0.01  # m^2
 CUSP = 0.15  # m, by which the tip of a thin island between two roads moves if corners are rounded to 0.1 mm
-settled = settings(max_examples=3, deadline=None)
+settled = settings(max_examples=2, deadline=None)
 seeds = st.integers(0, 10_000)
 DRAWINGS = pytest.mark.parametrize("draw", [random_design, random_lanes_design, random_turn_lanes_design])
 Drawing = Callable[[int], dict[str, Any]]

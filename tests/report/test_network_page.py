@@ -97,8 +97,7 @@ def test_a_browser_draws_the_network(page: chromium.BrowserTab, tmp_path: Path) 
     run = run_of(lanes=2)
     assert isinstance(run.road, Route)
     path = view.write([run], tmp_path / "page.html")
-    page.open(path)
-    page.run("roadgpt.player.choose('free')")
+    page.open(path, "#camera=free")
     picture = page.picture(".scene")[..., :3]
     assert page.told == []
     is_dark = (picture.max(axis=2) < 0.4) & (np.ptp(picture, axis=2) < 0.12)
@@ -110,8 +109,8 @@ def test_a_browser_draws_the_network(page: chromium.BrowserTab, tmp_path: Path) 
     assert is_road.mean() > 0.015
     lane = run.road.legs[0]
     (arrow,) = (each for each in arrows(run.road.network) if (each.end.road, each.lane) == lane[:2])
-    page.run("roadgpt.player.choose('bonnet')")
-    page.run(f"roadgpt.player.moveTo(roadgpt.player.duration * {(arrow.s - 9) / run.road.length})")
+    share = (arrow.s - 9) / run.road.length
+    page.run(f"roadgpt.player.choose('bonnet'); roadgpt.player.moveTo(roadgpt.player.duration * {share})")
     picture = page.picture(".scene")[..., :3]
     high, wide = picture.shape[:2]
     # between the stop line and the car, where the lane has no other paint
@@ -125,10 +124,8 @@ def test_a_browser_draws_a_map_without_a_route(page: chromium.BrowserTab, tmp_pa
     shares = []
     for legs in (road.legs, ()):
         shown = prove(Route.along(road.network, legs).on_ground(), setup=Setup(drives=False))
-        page.open(view.write([shown], tmp_path / "page.html"))
+        page.open(view.write([shown], tmp_path / "page.html"), "#camera=free")
         plan = page.picture(".plan canvas")[..., :3]
-        page.run("roadgpt.player.choose('free')")
-        page.settle()
         assert page.told == []
         tint = np.abs(plan - np.array([0x4F, 0x86, 0xB5]) / 255).max(axis=2) < 0.02
         shares.append(tint.mean())

@@ -22,7 +22,7 @@ from roadgpt_training.tokens import tokens_of
 from tables import rows as table_rows
 
 LANGUAGES = ("en", "de", "fr", "es", "it")
-NUMBER = 300
+NUMBER = 160
 LEFT = {"en": "left l", "de": "links l", "fr": "gauche g", "es": "izquierda i", "it": "sinistra s sx"}
 RIGHT = {"en": "right r", "de": "rechts r", "fr": "droite d", "es": "derecha d", "it": "destra d dx"}
 FILLERS = dict(table_rows(__file__, "fillers"))
@@ -86,7 +86,7 @@ def test_the_sides_of_the_text_in_order_are_those_of_the_plan(language: str) -> 
             if len(listed_sides) > 2:
                 seen += 1
                 assert listed_sides == "".join((turn.side or "?")[0] for turn in turns(each.plan)), each
-    assert seen > 70
+    assert seen > 35
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -101,7 +101,7 @@ def test_the_figures_of_the_text_are_those_of_the_plan(language: str) -> None:
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_the_figures_of_a_row_stand_in_its_order(language: str) -> None:
     seen = 0
-    for each in written(language):
+    for each in said(language, 300):
         its = turns(each.plan)
         rows = [
             [turn.degrees.lo if turn.degrees else None for turn in its],
@@ -145,5 +145,5 @@ def test_a_quarter_of_the_compositions_are_lists_and_every_language_has_some() -
     shares = dict(WAYS)
     assert shares[listed] / SHARES[-1] == pytest.approx(0.25, abs=0.02)
     series = pairs(4)
-    families = {next(series).family for _ in range(1500)}
+    families = {next(series).family for _ in range(600)}
     assert families >= {f"composed-{language}" for language in LANGUAGES}
