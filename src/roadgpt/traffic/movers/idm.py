@@ -88,7 +88,8 @@ class IdmMover:
             for n in _against(network, self.ids, self._path[1]):
                 self._density[n] = DENSITY.get(scene.oncoming, 0.0)
         self._begin_density = self._density[list(self._waits)]
-        self._wanted = float((self._density * self.lanes.length).sum())
+        is_road = self.lanes.junction < 0  # ways through a junction lie over each other
+        self._wanted = float((self._density * self.lanes.length)[is_road].sum())
         self._tick = 0
         self._goes_on = np.diff(self.lanes.onward_of) > 0
 
