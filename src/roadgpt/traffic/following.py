@@ -330,7 +330,11 @@ def _may_enter(crowd: Crowd, i: int, k: int, ahead: float, is_over: bool, count:
                 return False
     if begin == end or lanes.leaves_ring[lane]:  # in a ring everybody moves up, or it would stand for ever
         return True
-    return _has_room(crowd, i, k, ahead, count)
+    if _has_room(crowd, i, k, ahead, count):
+        return True
+    if row[WAIT] > PATIENCE:  # it looks for another way, or a circle of full roads would stand for ever
+        whole[i, LAST] = k
+    return False
 
 
 @compiled
