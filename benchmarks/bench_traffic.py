@@ -5,9 +5,9 @@ stuck.
     python benchmarks/bench_traffic.py --hours 100 --flow dense    dense on 20 networks without unsignalled
     junctions
 
-Collisions are found by shapely on the boxes of everybody, every 0.1 s. Stuck is who has stood at one place first
-in line for 30 s, with no light against it and nobody in the junction ahead. These are added up over reds,
-as no green lasts 30 s."""
+Collisions are found by shapely on the boxes of everybody, every 0.1 s. Stuck is who has stood at one place,
+first in line, for 30 s with no light against it and nobody in the junction ahead. These are added up over
+reds, as no green lasts 30 s."""
 
 import argparse
 import itertools
