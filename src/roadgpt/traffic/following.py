@@ -420,10 +420,8 @@ def _change(crowd: Crowd, i: int, side: int, own: float, wanted: float, count: i
     end = min(lanes.usable[target, 1], lanes.stop[target] - LINE - row[LENGTH] / 2.0)
     if s < lanes.usable[target, 0] + row[LENGTH] or (not must and s + way > end):
         return -math.inf
-    limit, best = (
-        URGENT if must else SAFE,
-        idm(row[V], wanted, math.inf, 0.0, row[PULL], row[BRAKE], row[HEADWAY]),
-    )
+    limit = URGENT if must else SAFE
+    best = idm(row[V], wanted, math.inf, 0.0, row[PULL], row[BRAKE], row[HEADWAY])
     for n in range(count):
         entry = crowd.entries[n]
         back, offset = False, 0.0
