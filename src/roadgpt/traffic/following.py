@@ -330,7 +330,11 @@ def _may_enter(crowd: Crowd, i: int, k: int, ahead: float, is_over: bool, count:
                 return False
     if begin == end or lanes.leaves_ring[lane]:  # in a ring everybody moves up, or it would stand for ever
         return True
-    return _has_room(crowd, i, k, ahead, count)
+    if _has_room(crowd, i, k, ahead, count):
+        return True
+    if row[WAIT] > PATIENCE:  # it looks for another way, or a circle of full roads would stand for ever
+        whole[i, LAST] = k
+    return False
 
 
 @compiled
@@ -416,10 +420,8 @@ def _change(crowd: Crowd, i: int, side: int, own: float, wanted: float, count: i
     end = min(lanes.usable[target, 1], lanes.stop[target] - LINE - row[LENGTH] / 2.0)
     if s < lanes.usable[target, 0] + row[LENGTH] or (not must and s + way > end):
         return -math.inf
-    limit, best = (
-        URGENT if must else SAFE,
-        idm(row[V], wanted, math.inf, 0.0, row[PULL], row[BRAKE], row[HEADWAY]),
-    )
+    limit = URGENT if must else SAFE
+    best = idm(row[V], wanted, math.inf, 0.0, row[PULL], row[BRAKE], row[HEADWAY])
     for n in range(count):
         entry = crowd.entries[n]
         back, offset = False, 0.0

@@ -88,7 +88,8 @@ class IdmMover:
             for n in _against(network, self.ids, self._path[1]):
                 self._density[n] = DENSITY.get(scene.oncoming, 0.0)
         self._begin_density = self._density[list(self._waits)]
-        self._wanted = float((self._density * self.lanes.length).sum())
+        is_road = self.lanes.junction < 0  # ways through a junction lie over each other
+        self._wanted = float((self._density * self.lanes.length)[is_road].sum())
         self._tick = 0
         self._goes_on = np.diff(self.lanes.onward_of) > 0
 
@@ -198,14 +199,15 @@ class IdmMover:
             self._free = list(range(2 * size - 1, size - 1, -1))
         return self._free.pop()
 
-    def _way_from(self, lane: int, rng: np.random.Generator) -> list[int]:
+    def _way_from(self, lane: int, rng: np.random.Generator, length: float = 0.0) -> list[int]:
         """Draws the lanes that a vehicle drives through: at each junction one of the ways on, of those that
-        lead off the map if there is one, and not to where it has been."""
+        lead off the map and whose bends it can follow if there is one, and not to where it has been."""
+        can_leave = (self._exits < NEVER) & (self.lanes.longest >= length)
         way = [lane]
         while len(way) < LONGEST_WAY:
             here = way[-1]
             onward = self.lanes.onward[self.lanes.onward_of[here] : self.lanes.onward_of[here + 1]]
-            good = [each for each in onward.tolist() if self._exits[each] < NEVER and each not in way]
+            good = [each for each in onward.tolist() if can_leave[each] and each not in way]
             if not good and len(onward):
                 good = [min(onward.tolist(), key=lambda each: self._exits[each])]
             if not good:
@@ -249,7 +251,8 @@ class IdmMover:
         for n in np.flatnonzero(is_short).tolist():
             row, end = rows[n], whole[rows[n], f.LAST]
             rng = np.random.default_rng([self._seed, int(self._who[n]) + 1, self._tick])
-            more = self._way_from(int(ways[row, end - 1]), rng)[1 : LONGEST_WAY - end + 1]
+            length = float(self._numbers[row, f.LENGTH])
+            more = self._way_from(int(ways[row, end - 1]), rng, length)[1 : LONGEST_WAY - end + 1]
             ways[row, end : end + len(more)] = more
             whole[row, f.LAST] = end + len(more)
         if has_left.any():
