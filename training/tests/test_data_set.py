@@ -5,7 +5,6 @@ import shutil
 from collections import Counter
 from functools import cache
 from pathlib import Path
-from zlib import crc32
 
 import pytest
 from click.testing import CliRunner
@@ -22,15 +21,10 @@ SPLITS = ("train", "validation", "test", "exam")
 
 @pytest.fixture(scope="module")
 def splits() -> dict[str, list[Pair]]:
-    """All pairs; one plan in five, and each refusal, is read and brought into standard form, once."""
-    standard = cache(labels._standard)
+    """All pairs; a plan that many of them have is brought into standard form once."""
     out = {}
-
-    def sampled(plan: str, is_change: bool) -> str:
-        return standard(plan, is_change) if plan.startswith("!") or crc32(plan.encode()) % 5 == 0 else plan
-
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(labels, "_standard", sampled)
+        patch.setattr(labels, "_standard", cache(labels._standard))
         for split in SPLITS:
             out[split], problems = read_pairs((HAND / split).glob("*.jsonl"))
             assert problems == []
