@@ -16,6 +16,7 @@ import roadgpt
 from road_parts import road_of
 from roadgpt.drive import COLUMNS, Command, Drive, Simulator, simulate
 from roadgpt.drive.simulators.mujoco import ETK_LIKE, MujocoSimulator, Vehicle
+from roadgpt.drive.simulators.mujoco.dynamics import slip_valve
 from roadgpt.errors import PartError, SimulationError
 from roadgpt.road import CrossSection, Limits, Road, World
 
@@ -211,24 +212,30 @@ def test_without_numba_the_same_drive_comes_out(tmp_path):
         np.testing.assert_allclose(plain[name], here[name], atol=1e-6)
 
 
-def test_another_process_where_no_cache_can_be_written_gives_the_same_bytes(tmp_path):
+def test_another_process_gives_the_same_bytes(tmp_path):
+    there, done = in_another_process(tmp_path / "drive.npz")
+    assert done.ended == "goal"
+    here = drive(road_of((22, 0, 8), (14, 30, -6)), Follows(9.0))
+    assert hashlib.sha256(here.to_bytes()).hexdigest() == there
+
+
+def test_where_no_cache_can_be_written_code_is_compiled_all_the_same(tmp_path):
     # A copy of the package in which files stand where numba would make its folders.
     source = Path(roadgpt.__file__).parent
     shutil.copytree(source, tmp_path / "src" / "roadgpt", ignore=shutil.ignore_patterns("__pycache__"))
     for folder in [f for f in (tmp_path / "src").rglob("*") if f.is_dir()]:
         (folder / "__pycache__").write_text("")
     (tmp_path / "home").write_text("")
-    blocked = str(tmp_path / "home")
-    there, done = in_another_process(
-        tmp_path / "drive.npz",
-        PYTHONPATH=str(tmp_path / "src"),
-        HOME=blocked,
-        XDG_CACHE_HOME=blocked,
-        NUMBA_CACHE_DIR="",
-    )
-    assert done.ended == "goal"
-    here = drive(road_of((22, 0, 8), (14, 30, -6)), Follows(9.0))
-    assert hashlib.sha256(here.to_bytes()).hexdigest() == there
+    blocked = {name: str(tmp_path / "home") for name in ("HOME", "XDG_CACHE_HOME")}
+    asked = "from roadgpt.drive.simulators.mujoco.dynamics import slip_valve as f"
+    told = subprocess.run(
+        [sys.executable, "-c", f"{asked}; print(f(0.5, 0.3, 0.1, 0.002), len(f.signatures))"],
+        capture_output=True,
+        text=True,
+        check=True,
+        env=os.environ | blocked | {"PYTHONPATH": str(tmp_path / "src"), "NUMBA_CACHE_DIR": ""},
+    ).stdout.split()
+    assert told == [str(slip_valve(0.5, 0.3, 0.1, 0.002)), "1"]
 
 
 def test_a_car_that_makes_no_sense_is_told_so_and_leaves_no_log(tmp_path, monkeypatch):
