@@ -16,7 +16,6 @@ import roadgpt
 from road_parts import road_of
 from roadgpt.drive import COLUMNS, Command, Drive, Simulator, simulate
 from roadgpt.drive.simulators.mujoco import ETK_LIKE, MujocoSimulator, Vehicle
-from roadgpt.drive.simulators.mujoco.dynamics import slip_valve
 from roadgpt.errors import PartError, SimulationError
 from roadgpt.road import CrossSection, Limits, Road, World
 
@@ -219,6 +218,15 @@ def test_another_process_gives_the_same_bytes(tmp_path):
     assert hashlib.sha256(here.to_bytes()).hexdigest() == there
 
 
+HALVES = """
+import numpy as np
+from roadgpt.scene.shade import STEPS, to_screen
+table, out = np.linspace(0, 255, STEPS).astype(np.uint8), np.zeros((1, 1, 3), np.uint8)
+to_screen(np.full((1, 1, 3), 0.5, np.float32), table, out)
+print(out.tolist(), len(to_screen.signatures))
+"""
+
+
 def test_where_no_cache_can_be_written_code_is_compiled_all_the_same(tmp_path):
     # A copy of the package in which files stand where numba would make its folders.
     source = Path(roadgpt.__file__).parent
@@ -227,15 +235,14 @@ def test_where_no_cache_can_be_written_code_is_compiled_all_the_same(tmp_path):
         (folder / "__pycache__").write_text("")
     (tmp_path / "home").write_text("")
     blocked = {name: str(tmp_path / "home") for name in ("HOME", "XDG_CACHE_HOME")}
-    asked = "from roadgpt.drive.simulators.mujoco.dynamics import slip_valve as f"
-    told = subprocess.run(
-        [sys.executable, "-c", f"{asked}; print(f(0.5, 0.3, 0.1, 0.002), len(f.signatures))"],
+    done = subprocess.run(
+        [sys.executable, "-c", HALVES],
         capture_output=True,
         text=True,
         check=True,
         env=os.environ | blocked | {"PYTHONPATH": str(tmp_path / "src"), "NUMBA_CACHE_DIR": ""},
-    ).stdout.split()
-    assert told == [str(slip_valve(0.5, 0.3, 0.1, 0.002)), "1"]
+    )
+    assert done.stdout == "[[[127, 127, 127]]] 1\n"
 
 
 def test_a_car_that_makes_no_sense_is_told_so_and_leaves_no_log(tmp_path, monkeypatch):
