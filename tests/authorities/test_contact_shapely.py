@@ -102,7 +102,7 @@ def test_who_touches_the_car_and_when() -> None:
 
 def test_somebody_thin_and_fast_is_not_missed_between_two_steps() -> None:
     # a bicycle that crosses a car's front corner within one step, both at 40 m/s
-    for late in np.linspace(-0.05, 0.05, 41):
+    for late in np.linspace(-0.05, 0.05, 21):
         own = straight(0, 0, 0, 40)
         bicycle = straight(60.0 + BOX.length / 2, -60 + late * 40, np.pi / 2, 40)
         drive = among(driven(own, 3.0, ROAD), tracks(3.0, bicycle_1=("bicycle", bicycle)))
@@ -142,7 +142,7 @@ def until_contact(own: Any, other: Any, size: Any, longest: float) -> float:
 def test_conflict_times_are_those_of_boxes_that_go_straight_on() -> None:
     rng = np.random.default_rng(5)
     met = 0
-    for _ in range(70):
+    for _ in range(30):
         heading, v, w = rng.uniform(-0.3, 0.3), rng.uniform(2, 20), rng.uniform(0, 12)
         place, turned = (rng.uniform(6, 25), rng.uniform(-7, 3)), rng.uniform(-3, 3)
         kind = str(rng.choice(["car", "adult", "truck"]))
@@ -160,7 +160,7 @@ def test_conflict_times_are_those_of_boxes_that_go_straight_on() -> None:
         if slow < 4.0 or found < 4.0:
             met += 1
             assert found == pytest.approx(slow, abs=FINE + 0.01)
-    assert met > 10
+    assert met > 4
 
 
 def test_many_others_take_little_time() -> None:

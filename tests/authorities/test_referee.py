@@ -126,9 +126,13 @@ def test_the_development_prompts_can_be_read_and_are_kept(referee: ModuleType) -
 def all_right(prompt: dict[str, Any], referee: ModuleType) -> bool:
     """Whether three roads of a prompt keep its truth."""
     earlier: list[Design] = []
+    try:
+        brief = read(prompt["prompt"])
+    except RoadGPTError:
+        return False
     for seed in range(3):
         try:
-            earlier.append(planner.draft(read(prompt["prompt"]), World(), (), earlier, seed))
+            earlier.append(planner.draft(brief, World(), (), earlier, seed))
         except RoadGPTError:
             return False
         points = build(earlier[-1]).centreline().round(4)

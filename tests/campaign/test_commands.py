@@ -22,6 +22,7 @@ from campaign.quick import Inline, InlineJob, plan, put_on_shelves
 from roadgpt.campaign.folder_record import kept_run
 from roadgpt.campaign.lifecycle import begin, work
 from roadgpt.campaign.status import status_of
+from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
 from roadgpt.run import read_run, store
 from roadgpt.run.atomic import alone_in
@@ -47,7 +48,9 @@ def driven(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A small campaign with real drives, made by the command."""
     folder = tmp_path_factory.mktemp("driven") / "c"
     words = ["turn x2", "-n", 3, "--reader", "plan", "--seed", 7, "--out", folder, "--json"]
-    done = roadgpt("campaign", *words)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("roadgpt.campaign.executors.processes.Processes", InProcess)
+        done = roadgpt("campaign", *words)
     assert done.exit_code == 0, done.output
     assert json.loads(done.stdout)["done"] == 3
     return folder
@@ -231,6 +234,7 @@ def of_a_folder(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in files}
 
 
+@pytest.mark.usefixtures("no_workers")
 def test_a_folder_of_roadgpt_run_is_resumed_as_a_campaign_is(tmp_path: Path) -> None:
     """Runs without a row have not ended: they are made again, with pictures and road files."""
     whole, broken = tmp_path / "whole", tmp_path / "broken"

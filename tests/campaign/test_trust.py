@@ -90,7 +90,7 @@ def invoke(*words: str) -> Result:
 COMMANDS: dict[str, tuple[str, ...]] = {
     "edit": ("edit", "run/runs/0001", "--plan", "road: length +20", "--no-plot", "--out", "edited"),
     "faults by workers": ("faults", "run/runs/0001", "--repeat", "1", "--groups", "--no-plot", "-j", "2"),
-    "faults of a run": ("faults", "run/runs/0001", "--repeat", "1", "--no-plot"),
+    "faults of a run": ("faults", "run/runs/0001", "--repeat", "1", "--groups", "--no-plot"),
     "faults of a campaign": ("faults", "done", "--repeat", "1", "--groups", "--no-plot"),
     "drive": ("drive", "--again", "done", "1", "--no-plot"),
     "resume": ("resume", "begun", "-q"),

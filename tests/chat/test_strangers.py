@@ -104,6 +104,7 @@ def test_a_key_beside_a_plan_is_not_for_the_plans_server(monkeypatch: pytest.Mon
         key_for(ELSEWHERE)
 
 
+@pytest.mark.usefixtures("no_workers")
 def test_a_server_that_gets_no_key_and_wants_one_is_told_why(stub: StubServer) -> None:
     stub.play(lambda request, handler: send(handler, 401, {"error": {"message": "no key"}}))
     result = invoke("campaign", str(plan_naming(stub.url)), "--out", "c", "-q")

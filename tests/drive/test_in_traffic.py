@@ -8,7 +8,6 @@ from roadgpt.run import Setup, perform
 PLANS = [
     "straight 300 | lanes=1 against=1",
     "turn left 90 r60; straight 200; turn right 90 r50; straight 150",
-    "| lanes=2 against=2 len=400 map_size=800",
     "straight 150 // crossroads right lights // straight 120",
     "| lanes=2 against=2 len=150 // crossroads straight lights // | lanes=2 against=2 len=150",
     "straight 120 // crossroads straight priority // straight 120 // t_junction right priority // |",

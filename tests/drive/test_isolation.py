@@ -117,7 +117,7 @@ def test_whatever_goes_wrong_is_one_error_of_that_drive(spec) -> None:
     ):
         with pytest.raises(DriverError, match=says):
             went(spec(f"    def steer(self, view):\n        {does}"))
-        assert went(spec(CALM)).ended == "goal"
+    assert went(spec(CALM)).ended == "goal"
 
 
 HANGS = {

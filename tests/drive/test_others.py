@@ -293,7 +293,7 @@ def in_view(eye: np.ndarray, boxes: np.ndarray, road: np.ndarray, reach: float =
 
 def test_boxes_hide_what_is_lower_behind_them() -> None:
     rng, eye, none, hidden = np.random.default_rng(3), np.array([1.0, -2.0, 1.2]), np.empty((0, 3)), 0
-    for _ in range(60):
+    for _ in range(40):
         n = int(rng.integers(2, 9))
         sizes = np.array([SIZES[kind] for kind in rng.choice([*SIZES], n)])
         boxes = np.column_stack(
@@ -312,7 +312,7 @@ def test_boxes_hide_what_is_lower_behind_them() -> None:
             assert not surely or k in found
             assert perhaps or k not in found
         hidden += n - len(found)
-    assert hidden > 40
+    assert hidden > 25
 
 
 def test_a_crest_hides_who_is_low_behind_it_and_nobody_is_seen_beyond_the_reach() -> None:

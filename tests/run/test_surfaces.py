@@ -204,12 +204,13 @@ def test_a_campaign_of_one_description_says_it_and_its_report_repeats_it() -> No
         assert f"--friction {friction}" in words_of(folder)
 
 
+@pytest.mark.usefixtures("no_workers")
 def test_campaigns_from_python_take_it(tmp_path: Path) -> None:
     (run,) = campaign(WET, 1, 3, setup=PLANS, out=tmp_path / "a")
     assert run.world.site.friction == 0.6
     plan = Plan(prompts=(WET,), reader="plan", drives=False, budget=CellBudget(tests=1))
     begin(plan, tmp_path / "b")
-    assert sum(1 for _ in work(tmp_path / "b"))  # by a worker of its own
+    assert sum(1 for _ in work(tmp_path / "b"))
     with Record.opened(tmp_path / "b") as record:
         assert record.cells()[0].request.world == World(site=Site(friction=0.6))
 

@@ -233,10 +233,9 @@ def test_who_stays_behind_somebody_of_a_scene_has_passed_and_else_is_stuck() -> 
         drive = scene(stops, 130.0, ended="stuck", car_1=("car", other))
         return judge(ROAD, drive, WORLD.changed(scene=words))
 
-    assert judged(3.0, -2, "car ahead v=0").outcome == "PASS"
-    assert (
-        "for 30 m and stayed 3.0 m behind car 1, which stands" in judged(3.0, -2, "car ahead v=0").description
-    )
+    passed = judged(3.0, -2, "car ahead v=0")
+    assert passed.outcome == "PASS"
+    assert "for 30 m and stayed 3.0 m behind car 1, which stands" in passed.description
     for gap, side, words in ((12.0, -2, "car ahead v=0"), (3.0, 2, "car oncoming"), (3.0, -2, "light")):
         found = judged(gap, side, words)
         assert (found.outcome, found.cause) == ("FAIL", "stuck")
