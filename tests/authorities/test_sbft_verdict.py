@@ -43,8 +43,8 @@ def agree(points: np.ndarray, map_size: float) -> bool:
     return sbft_verdict(points, map_size) == theirs
 
 
-def test_ours_equals_official_verdicts() -> None:
-    rows = official_verdicts()[::3]
+def test_ours_equals_every_official_verdict() -> None:
+    rows = official_verdicts()
     assert len({row["validation_message"] for row in rows}) >= 5
     for row in rows:
         ours = sbft_verdict(row["road_points"], row["map_size"])
@@ -59,7 +59,7 @@ def test_the_second_opinion_equals_official_verdicts() -> None:
 
 def test_random_and_mutated_roads() -> None:
     rng = np.random.default_rng(7)
-    for number in range(60):
+    for number in range(100):
         points, map_size = random_road(rng)
         for road in (points, mutated(points, rng)):
             assert agree(road, map_size), (number, road.tolist(), map_size)
