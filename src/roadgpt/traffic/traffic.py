@@ -56,21 +56,19 @@ class Traffic:
         self.lights = lights
         """The traffic lights; None if they stay green."""
         self._movers = [(mover, list[int]()) for mover in movers]  # with the places of their actors
-        self._samples: list[FloatArray] = []
-        self._sizes = np.empty((0, 2))
+        self._samples: list[FloatArray] = []  # each has rows of those who had come by then
+        self._sizes, self._names = np.empty((0, 2)), {TESTED}
 
     def advance(self, car: TestedCar) -> None:
         """Computes the next sample. Call it at 0, 0.1, 0.2 ... s, with the tested car at that time."""
         if not self._samples:
             self._add([mover.start(car) for mover, _ in self._movers])
         time, now = (len(self._samples) - 1) * STEP, self._samples[-1]
-        bodies = np.column_stack([now, self._sizes])
-        is_there = ~np.isnan(now[:, 0])
-        states = []
+        is_there, states = ~np.isnan(now[:, 0]), []
         for mover, own in self._movers:
             is_other = is_there.copy()
             is_other[own] = False
-            states.append(mover.move(time, car, bodies[is_other]))
+            states.append(mover.move(time, car, np.hstack([now[is_other], self._sizes[is_other]])))
         self._add(states)
 
     def _add(self, states: Sequence[FloatArray]) -> None:
@@ -79,10 +77,8 @@ class Traffic:
             for actor in mover.actors[len(own) :]:
                 own.append(len(self.actors))
                 self.actors.append(replace(actor, name=self._free(actor.name)))
-                self._sizes = np.vstack([self._sizes, actor.size[:2]])
-        if came := len(self.actors) - before:  # they were not there in the samples so far
-            nobody = np.full((came, 5), np.nan)
-            self._samples = [np.vstack([sample, nobody]) for sample in self._samples]
+        if came := [actor.size[:2] for actor in self.actors[before:]]:
+            self._sizes = np.vstack([self._sizes, came])
         sample = np.full((len(self.actors), 5), np.nan)
         for (_, own), moved in zip(self._movers, states, strict=True):
             sample[own] = moved
@@ -90,18 +86,31 @@ class Traffic:
 
     def _free(self, name: str) -> str:
         """Returns a name that nobody has: the given one, or with a number behind it."""
-        taken, number, free = {TESTED, *(each.name for each in self.actors)}, 1, name
-        while free in taken:
+        number, free = 1, name
+        while free in self._names:
             number += 1
             free = f"{name} ({number})"
+        self._names.add(free)
         return free
+
+    def around(self, time: float) -> tuple[FloatArray, FloatArray, float]:
+        """Returns the samples before and after a time between 0 and that of the last one, shape (actors, 5),
+        and which share of the time between them has passed; 0 at the time of a sample."""
+        place, last = time / STEP, len(self._samples) - 1
+        first = min(int(place + 1e-9), last)
+        share = place - first if place - first >= 1e-6 else 0.0
+        return self._whole(first), self._whole(min(first + 1, last)), share
+
+    def _whole(self, number: int) -> FloatArray:
+        """Returns a sample with rows for all actors so far."""
+        sample = self._samples[number]
+        came = len(self.actors) - len(sample)
+        return np.vstack([sample, np.full((came, 5), np.nan)]) if came else sample
 
     def at(self, time: float) -> FloatArray:
         """Returns the states at a time between 0 and that of the last sample, shape (actors, 5)."""
-        place = time / STEP
-        first = min(int(place + 1e-9), len(self._samples) - 1)
-        share, now = place - first, self._samples[first]
-        return now if share < 1e-6 else np.asarray((1 - share) * now + share * self._samples[first + 1])
+        now, after, share = self.around(time)
+        return np.asarray((1 - share) * now + share * after) if share else now
 
     @property
     def missed(self) -> tuple[str, ...]:
@@ -112,7 +121,9 @@ class Traffic:
 
     def tracks(self) -> Tracks:
         """Returns how everybody moved who was there at some time."""
-        states = np.reshape(self._samples, (len(self._samples), len(self.actors), 5))
+        states = np.full((len(self._samples), len(self.actors), 5), np.nan)
+        for number, sample in enumerate(self._samples):
+            states[number, : len(sample)] = sample
         was_there = np.flatnonzero(~np.isnan(states[:, :, 0]).all(axis=0))
         return Tracks(tuple(self.actors[number] for number in was_there), states[:, was_there])
 
