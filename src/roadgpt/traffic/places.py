@@ -25,9 +25,6 @@ if TYPE_CHECKING:
 
 BESIDE = 2.0  # m, from the outermost driving lane to the middle of who stands or walks beside it
 CLEAR = 0.15  # m, from a driving lane to a parked vehicle: 1 m to a car in a lane of 3.5 m (Euro NCAP, CPNCO)
-KERB = 0.1  # m, between the lanes and who stands before a crosswalk
-BEFORE, BEHIND = 5.0, 8.0  # m, from a junction to those who cross the road before and behind it
-DRIVEWAY = 6.0  # m, radius in which somebody turns from beside the road into a lane
 PLACE = 7.0  # m of a row for each parked vehicle: at least 6.5 m, of a delivery van
 FREE, VANS = 0.15, 0.1  # shares of the places that are free, and of vans among the parked vehicles
 KEPT_FREE = 5.0 + sum(CROSSWALK) + PLACE / 2
