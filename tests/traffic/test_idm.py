@@ -8,7 +8,7 @@ import pytest
 import shapely
 
 from roadgpt import traffic
-from roadgpt.network import network_of
+from roadgpt.network import legs_of, network_of
 from roadgpt.network.lanes import lanes_of
 from roadgpt.run import Setup, perform
 from roadgpt.traffic import Size, Stage
@@ -167,6 +167,31 @@ def test_traffic_does_not_lock_up(plan, seed):
     assert longest * STEP < 150.0
 
 
+@pytest.mark.parametrize("plan", ["map columns=3 rows=3 lights", PLANS[4]])
+def test_everybody_takes_a_shortest_way_to_an_exit_and_only_a_few_go_back(plan):
+    """A slow exact algorithm: the least sums of lengths, until none becomes less."""
+    mover = IdmMover(stage(plan), "dense")
+    mover.start(None)
+    lanes, network = mover.lanes, network_of(stage(plan).road, stage(plan).world)
+    onward = {
+        n: [mover.ids.index(each) for each in lanes_of(network)[key].successors]
+        for n, key in enumerate(mover.ids)
+    }
+    assert mover.vehicles > 5
+    back = 0
+    for row in mover._rows:
+        way = mover._ways[row, : mover._whole[row, 1]].tolist()
+        goal, far = way[-1], {way[-1]: lanes.length[way[-1]]}
+        assert not onward[goal]
+        for _ in mover.ids:
+            for n, to in onward.items():
+                if n != goal:
+                    far[n] = lanes.length[n] + min((far.get(each, math.inf) for each in to), default=math.inf)
+        assert sum(lanes.length[way]) == pytest.approx(far[way[0]])
+        back += len(way) > 1 and mover.ids[goal].road == mover.ids[way[0]].road
+    assert not back
+
+
 def test_who_comes_upon_somebody_standing_stops_behind_them():
     mover = empty(STRAIGHT)
     lane = mover.lanes.begins.nonzero()[0][0]
@@ -210,6 +235,10 @@ def test_who_gives_way_lets_the_tested_car_pass_and_then_goes():
 
     mover.start(tested(station))
     mover.enter(waits, s, 8.0)
+    leg, begin = legs_of(own.road, own.world)[1], mover.lanes.onward_of
+    turns = mover.lanes.onward[begin[waits] : begin[waits + 1]]
+    turn = next(n for n in turns if leg in lanes_of(network).gives_way_to(mover.ids[n]))
+    mover._ways[1, 1], mover._whole[1, 1] = turn, 2  # from where on it plans anew
     crossing = own.road.passages[0]
     entered = None
     for tick in range(int((own.road.length - station) / 13.0 / STEP)):

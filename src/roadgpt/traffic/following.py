@@ -31,10 +31,10 @@ S, V, LENGTH, WIDTH, FACTOR, TOP, HEADWAY, PULL, BRAKE, ASIDE, BEGAN, PROGRESS, 
 share of speed limits and the top speed that it drives; IDM's T, a and b; its offset to the left of its
 lane's middle, that offset when its change of lane began, and the share of the change that is done (1: none
 under way); for how long it has stood first in line; and its acceleration in the next step."""
-AT, LAST, GRANTED, OLD, STATE, HAS_STOPPED = range(6)
+AT, LAST, GRANTED, OLD, STATE, HAS_STOPPED, GOAL = range(7)
 """Columns of whole numbers: which lane of its way it is in, the number of lanes of its way, up to which of
-them it has a grant, the lane that it is leaving (-1: none), its state, and whether it has stood at the stop
-sign ahead."""
+them it has a grant, the lane that it is leaving (-1: none), its state, whether it has stood at the stop
+sign ahead, and the exit of the map to which it drives."""
 ABSENT, DRIVES, STANDS_HIT, GONE = range(4)
 TESTED = 0
 """The row of the tested car, which is not moved."""

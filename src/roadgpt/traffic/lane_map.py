@@ -26,6 +26,7 @@ in metres, the highest speed in m/s of its bend, and cosine and sine of the head
 WIDEST = 2.5  # m, width of the widest vehicles
 OVER = 0.2  # m, by which the corner of a vehicle may reach over the edge of its lane in a bend
 ACROSS = 2.0  # m/s^2, lateral acceleration of others in bends; ISO 11270 allows lane keeping 3
+PER_CHANGE = 1e6  # m, that a change of lane counts on a way, so that there are as few as possible
 
 
 class LaneMap(NamedTuple):
@@ -68,6 +69,11 @@ class LaneMap(NamedTuple):
     """The length in metres of the longest vehicle that keeps within the lane in its bends."""
     leaves_ring: NDArray[np.bool_]
     """Whether a lane of a junction continues the ring of a roundabout, around it or out of it."""
+    exits: IntArray
+    """The lanes that lead off the map, and those from where no way does."""
+    to_exit: FloatArray
+    """Shape (exits, lanes): the metres from the start of each lane to the end of each exit, on the shortest
+    way, and PER_CHANGE for each change of lane on it; infinite if there is none."""
     conflict: IntArray
     """Shape (conflicts, 2): the other lane, and 1 if the own lane gives way to it; ``conflict_of`` has where
     each lane begins."""
@@ -106,16 +112,19 @@ def lane_map(
     before, before_of = _rows([[number[key] for key in lane.predecessors if key in number] for lane in used])
     flat, conflict_of = _rows([_conflicts(lanes, lane, number) for lane in used])
     cells, cell_of, grid = _grid(table, np.repeat(steps, np.diff(first)))
+    length = np.array([lane.length for lane in used])
+    sides = np.array([[_beside(lane, side, number) for side in ("left", "right")] for lane in used])
+    ends = np.array([_ends(lanes, lane) for lane in used])
     return LaneMap(
         table,
         first,
         np.repeat(np.arange(len(used)), np.diff(first)),
         np.concatenate(stations),
         np.array(steps),
-        np.array([lane.length for lane in used]),
+        length,
         np.array(usable),
         np.array([lane.member.profile.lanes[lane.id.lane].speed_limit or limit for lane in used]),
-        np.array([[_beside(lane, side, number) for side in ("left", "right")] for lane in used]),
+        sides,
         np.array([-1 if lane.member.junction is None else lane.member.junction for lane in used]),
         np.array(onward, np.int64),
         onward_of,
@@ -123,10 +132,11 @@ def lane_map(
         before_of,
         np.array([lane.length if lane.stop is None else lane.stop for lane in used]),
         np.array([lane.control == "stop" for lane in used]),
-        np.array([_ends(lanes, lane) for lane in used]),
+        ends,
         np.array([_begins(lanes, lane, number) for lane in used]),
         np.array(longest),
         np.array([_leaves_ring(lanes, lane) for lane in used]),
+        *_to_exits(length, sides, np.array(onward, np.int64), np.diff(onward_of), ends),
         np.array([row[:2] for row in flat], np.int64).reshape(-1, 2),
         np.array([row[2:] for row in flat], float).reshape(-1, 4),
         conflict_of,
@@ -204,6 +214,24 @@ def _leaves_ring(lanes: Lanes, lane: Lane) -> bool:
     rings = lanes.network.roundabout_of
     ring = None if lane.member.junction is None else rings.get(lane.member.junction)
     return ring is not None and any(each.road in ring.ring for each in lane.predecessors)
+
+
+def _to_exits(
+    length: FloatArray, beside: IntArray, onward: IntArray, ways_on: IntArray, ends: NDArray[np.bool_]
+) -> tuple[IntArray, FloatArray]:
+    """Returns the exits of a map, and how far each lane is from each of them."""
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import dijkstra
+
+    count, (lane, side) = len(length), np.nonzero(beside >= 0)
+    begin = np.r_[np.repeat(np.arange(count), ways_on), lane]
+    to = np.r_[onward, beside[lane, side]]
+    cost = np.r_[np.repeat(length, ways_on), np.full(len(lane), PER_CHANGE)]
+    back = csr_array((cost, (to, begin)), shape=(count, count))
+    leaves = (ways_on == 0) & ~ends
+    far = dijkstra(back, indices=np.flatnonzero(leaves))
+    exits = np.flatnonzero(leaves | ~np.isfinite(far).any(axis=0))
+    return exits, dijkstra(back, indices=exits) + length[exits, None]
 
 
 def _rows(rows: Sequence[Sequence[Any]]) -> tuple[list[Any], IntArray]:

@@ -17,7 +17,7 @@ from roadgpt.network.lanes import Lanes, lanes_of
 from roadgpt.network.network import Leg, Network, RoadEnd
 from roadgpt.traffic import following as f
 from roadgpt.traffic.actor import SIZES, STEP, Actor, FloatArray
-from roadgpt.traffic.lane_map import PV, PX, PY, LaneMap, lane_map, place_on
+from roadgpt.traffic.lane_map import PER_CHANGE, PV, PX, PY, lane_map, place_on
 from roadgpt.traffic.lights import Lights
 
 if TYPE_CHECKING:
@@ -41,9 +41,8 @@ buses (Directives 92/6/EEC and 2002/85/EC). Cars: M. Treiber, A. Hennecke, D. He
 trucks and buses accelerate as in M. Treiber, A. Kesting, Traffic Flow Dynamics (2013), table 11.2."""
 SPREAD, SLOWEST, FASTEST = 0.1, 0.8, 1.2  # of the share of the limit that drivers choose: SUMO's speedDev
 REACH = 500.0  # m: lanes that come nowhere as near to the driven road are left out
-LONGEST_WAY = 64  # lanes that are planned ahead
 KEPT = 4  # lanes behind a vehicle that are remembered, and ahead of it that are always planned
-NEVER = 1e6  # s
+TURNS_BACK = 1e-6  # how often somebody leaves on the road on which it came, where there are other exits
 CLEAR = 8.0  # m, from the middle of a vehicle at the start to the place where it stops
 LEAST_SPEED = 4.0  # m/s, with which a vehicle comes onto the map at least
 AHEAD, BEHIND = 30.0, 15.0  # m before and behind the tested car where nobody is at first, and 2 s of its way
@@ -68,11 +67,11 @@ class IdmMover:
         self._number = {key: n for n, key in enumerate(self.ids)}
         self._path = _path(road, legs_of(road, stage.world), self._number)
         self._rng = np.random.default_rng([self._seed, 0])
-        self._exits = _steps_to_exit(self.lanes)
-        size = 64
+        self._exit_roads = np.array([self.ids[n].road for n in self.lanes.exits])
+        size, longest = 64, max(len(self.ids) + 2 * KEPT, len(self._path[1])) + 1
         self._numbers = np.zeros((size, 14))
-        self._whole = np.zeros((size, 6), np.int64)
-        self._ways = np.full((size, max(LONGEST_WAY, len(self._path[1]))), -1, np.int64)
+        self._whole = np.zeros((size, 7), np.int64)
+        self._ways = np.full((size, longest), -1, np.int64)
         self._states = np.full((size, 5), math.nan)
         self._who, self._rows = np.zeros(0, np.int64), np.zeros(0, np.int64)
         """The actors that are there, and the row of each."""
@@ -157,7 +156,7 @@ class IdmMover:
         k = min(max(bisect_right(starts, car.s) - 1, 0), len(lanes) - 1)
         if whole[f.STATE] == f.ABSENT:
             self._ways[f.TESTED, : len(lanes)] = lanes
-            whole[:] = 0, len(lanes), -1, -1, f.DRIVES, 0
+            whole[: f.GOAL] = 0, len(lanes), -1, -1, f.DRIVES, 0
         share = (car.s - starts[k]) / max(starts[k + 1] - starts[k], 1e-6)
         whole[f.AT] = k
         row[f.S] = share * self.lanes.length[lanes[k]]
@@ -166,7 +165,7 @@ class IdmMover:
         """Adds a vehicle at a station of a lane, with a speed of at most ``most`` m/s."""
         number = len(self.actors) + 1
         rng = np.random.default_rng([self._seed, number])
-        way = self._way_from(lane, rng)
+        way, goal = self._way_from(lane, rng)
         longest = float(self.lanes.longest[way].min())
         kind: ActorKind = list(SHARES)[int(rng.choice(len(SHARES), p=list(SHARES.values())))]
         if SIZES[kind].length > longest:
@@ -181,7 +180,7 @@ class IdmMover:
             s, speed, size.length, size.width, factor, top, headway, pull, brake,
         )  # fmt: skip
         self._numbers[row, f.PROGRESS] = 1.0
-        self._whole[row] = 0, len(way), -1, -1, f.DRIVES, 0
+        self._whole[row] = 0, len(way), -1, -1, f.DRIVES, 0, goal
         self._ways[row, : len(way)] = way
         *place, heading, _ = place_on(self.lanes, lane, s)
         self._states[row] = *place, heading, speed
@@ -199,21 +198,27 @@ class IdmMover:
             self._free = list(range(2 * size - 1, size - 1, -1))
         return self._free.pop()
 
-    def _way_from(self, lane: int, rng: np.random.Generator, length: float = 0.0) -> list[int]:
-        """Draws the lanes that a vehicle drives through: at each junction one of the ways on, of those that
-        lead off the map and whose bends it can follow if there is one, and not to where it has been."""
-        can_leave = (self._exits < NEVER) & (self.lanes.longest >= length)
-        way = [lane]
-        while len(way) < LONGEST_WAY:
-            here = way[-1]
-            onward = self.lanes.onward[self.lanes.onward_of[here] : self.lanes.onward_of[here + 1]]
-            good = [each for each in onward.tolist() if can_leave[each] and each not in way]
-            if not good and len(onward):
-                good = [min(onward.tolist(), key=lambda each: self._exits[each])]
+    def _way_from(
+        self, lane: int, rng: np.random.Generator, goal: int = -1, length: float = 0.0, full: int = -1
+    ) -> tuple[list[int], int]:
+        """Returns the lanes that a vehicle drives through, and to which exit: to ``goal`` if it can be
+        reached from there without more changes of lane than another, else to one that is drawn. It does
+        not come through the lane ``full``, nor where the vehicle is too long, if there is another way."""
+        lanes, way = self.lanes, [lane]
+        while True:
+            onward = lanes.onward[lanes.onward_of[way[-1]] : lanes.onward_of[way[-1] + 1]].tolist()
+            good = [each for each in onward if each != full and lanes.longest[each] >= length] or onward
             if not good:
-                break
-            way.append(int(good[int(rng.integers(len(good)))]))
-        return way
+                return way, goal
+            far = lanes.to_exit[:, good].min(axis=1)
+            is_near = far < far.min() + PER_CHANGE / 2
+            if goal < 0 or not is_near[goal]:
+                share = is_near * np.where(self._exit_roads == self.ids[lane].road, TURNS_BACK, 1.0)
+                goal = int(rng.choice(len(share), p=share / share.sum()))
+            there = min(good, key=lambda each: float(lanes.to_exit[goal, each]))
+            if there in way:
+                return way, goal
+            way.append(there)
 
     def _let_in(self) -> None:
         """Lets vehicles in: the flow is the density times the speed that is driven now, more if there are
@@ -241,20 +246,17 @@ class IdmMover:
         whole, ways, rows = self._whole, self._ways, self._rows
         at, last = whole[rows, f.AT], whole[rows, f.LAST]
         has_left = whole[rows, f.STATE] == f.GONE
-        is_long = at > LONGEST_WAY // 2
-        for row in rows[is_long].tolist():
-            begin = int(whole[row, f.AT]) - KEPT
-            kept = ways[row, begin : whole[row, f.LAST]].copy()
-            ways[row, : len(kept)] = kept
-            whole[row, [f.AT, f.LAST, f.GRANTED]] -= begin
-        is_short = ((last - at < KEPT) | is_long) & self._goes_on[ways[rows, last - 1]] & ~has_left
-        for n in np.flatnonzero(is_short).tolist():
-            row, end = rows[n], whole[rows[n], f.LAST]
+        for n in np.flatnonzero((last - at < KEPT) & self._goes_on[ways[rows, last - 1]] & ~has_left):
+            row, end = rows[n], last[n]
             rng = np.random.default_rng([self._seed, int(self._who[n]) + 1, self._tick])
-            length = float(self._numbers[row, f.LENGTH])
-            more = self._way_from(int(ways[row, end - 1]), rng, length)[1 : LONGEST_WAY - end + 1]
-            ways[row, end : end + len(more)] = more
-            whole[row, f.LAST] = end + len(more)
+            here, full = map(int, ways[row, end - 1 : end + 1])
+            length, goal = float(self._numbers[row, f.LENGTH]), int(whole[row, f.GOAL])
+            more, whole[row, f.GOAL] = self._way_from(here, rng, goal, length, full)
+            begin = max(int(at[n]) - KEPT, 0)
+            way = [*ways[row, begin : end - 1].tolist(), *more]
+            ways[row, : len(way)] = way
+            whole[row, [f.AT, f.GRANTED]] -= begin
+            whole[row, f.LAST] = len(way)
         if has_left.any():
             whole[rows[has_left], f.STATE] = f.ABSENT
             self._free += rows[has_left].tolist()
@@ -305,24 +307,3 @@ def _against(network: Network, ids: Sequence[Leg], path: Sequence[int]) -> Itera
     for n, key in enumerate(ids):
         if key.road in own and network.road(key.road).profile.leads_along(key.lane) != own[key.road]:
             yield n
-
-
-def _steps_to_exit(lanes: LaneMap) -> FloatArray:
-    """Returns for each lane the least number of lanes to one where the map ends; NEVER if no way leads
-    there."""
-    count = len(lanes.length)
-    is_exit = (np.diff(lanes.onward_of) == 0) & ~lanes.ends
-    found = np.where(is_exit, 0.0, NEVER)
-    open_ = np.flatnonzero(is_exit).tolist()
-    while open_:
-        here = open_.pop(0)
-        before = lanes.before[lanes.before_of[here] : lanes.before_of[here + 1]].tolist()
-        before += [n for n in range(count) if here in lanes.beside[n]] if not is_exit[here] else []
-        for each in before:
-            if found[each] == NEVER:
-                found[each] = found[here] + 1
-                open_.append(each)
-    # a lane that ends is left for the one beside it
-    for n in np.flatnonzero(lanes.ends):
-        found[n] = min((found[b] + 1 for b in lanes.beside[n] if b >= 0), default=NEVER)
-    return found
