@@ -182,6 +182,19 @@ def test_silent_words_get_lanes_a_way_and_wide_bends() -> None:
     assert asked("turn x3", "nhtsa:lead_vehicle_slower").clauses[0].radius.lo == pytest.approx(82.3, abs=1)
 
 
+@pytest.mark.parametrize(
+    "plan",
+    [
+        "straight | lanes=2 against=2 && ego v=50; adult crossing left v=5",
+        "straight | lanes=3 against=3 divided && ego v=50; child crossing left",
+        "straight | lanes=3 against=1 left_hand && ego v=40; adult crossing right v=2..4",
+    ],
+)
+def test_a_road_is_long_enough_for_who_comes_from_beyond_all_of_its_lanes(plan: str) -> None:
+    run = perform(plan, 1, setup=Setup(driver="robot", reader="plan"))
+    assert run.description.startswith("hit "), run.description
+
+
 def test_the_tested_car_has_the_lanes_beside_it_that_the_scene_names() -> None:
     run = made("r157:cut_in_unavoidable_collision", drives=False)
     assert run.road is not None

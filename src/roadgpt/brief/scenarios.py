@@ -7,7 +7,7 @@ import ast
 import operator
 import re
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
 from functools import cache
@@ -50,9 +50,9 @@ class Scenario(NamedTuple):
     """The name of its nominal road in ``ROADS``, as a template like ``scene``."""
     scene: str
     """A scene as in plans, with what is computed of the parameters in braces."""
-    parameters: Mapping[str, tuple[Value, str]]
+    parameters: Mapping[str, Sequence[Any]]
     """The nominal value of each, with its unit or what it means."""
-    grid: tuple[Mapping[str, tuple[Value, ...]], ...]
+    grid: Sequence[Mapping[str, Sequence[Value]]]
     """The standard grid: blocks, each a product of its lists."""
     values: Mapping[str, Value]
     given: tuple[str, ...] = ()
@@ -178,14 +178,8 @@ def _nearest(name: str, known: Mapping[str, Any]) -> str:
 @cache
 def scenarios() -> Mapping[str, Scenario]:
     """Returns all scenarios with their nominal values, by name."""
-    made = {}
-    for name, row in TABLE.items():
-        parameters = {each: (usual, said) for each, (usual, said) in row["parameters"].items()}
-        values = {each: usual for each, (usual, _) in parameters.items()}
-        made[name] = Scenario(
-            name, **{**row, "parameters": parameters, "grid": tuple(row["grid"])}, values=values
-        )
-    return made
+    usual = {name: {each: value for each, (value, _) in TABLE[name]["parameters"].items()} for name in TABLE}
+    return {name: Scenario(name, **row, values=usual[name]) for name, row in TABLE.items()}
 
 
 def chosen(text: str) -> list[Scenario]:
@@ -196,9 +190,7 @@ def chosen(text: str) -> list[Scenario]:
         name, *given = part.split()
         named = [each for each in scenarios().values() if fnmatchcase(each.name, name)]
         if not named:
-            near = _nearest(name, scenarios()) or _nearest(
-                name, {each.partition(":")[2]: 0 for each in scenarios()}
-            )
+            near = _nearest(name, scenarios())
             raise UsageError(f"there is no scenario '{name[:40]}'; {near or 'roadgpt scenarios lists them'}")
         for each in named:
             for word in given:
