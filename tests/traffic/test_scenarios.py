@@ -10,9 +10,11 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import numpy as np
 import pytest
 
 from outside_judge import SHARED
+from roadgpt.brief.model import mirrored
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.scenarios import LANE_WIDTH, chosen, points_of, scenario, scenarios
 from roadgpt.brief.scene import Scene
@@ -48,9 +50,11 @@ def referee() -> ModuleType:
         sys.path.remove(str(SHARED))
 
 
-def made(name: str, drives: bool) -> Run:
-    setup = Setup(driver="robot", reader="plan", scenario=name, drives=drives)
-    return perform(scenario(name).plan, 1, World().changed(lane_width=LANE_WIDTH), setup)
+def made(name: str, drives: bool, left_hand: bool = False) -> Run:
+    setup = Setup(driver="robot", scenario=name, drives=drives)
+    brief = read_plan(scenario(name).plan)
+    brief = mirrored(brief) if left_hand else brief
+    return perform(brief, 1, World().changed(lane_width=LANE_WIDTH), setup)
 
 
 def points(blocks: list[dict[str, list[Any]]], dropped: set[str]) -> int:
@@ -212,6 +216,20 @@ def test_an_outside_judge_finds_the_scenario_in_the_exported_files(name: str, re
         export(run, folder, ["opendrive", "openscenario"], lambda said: None)
         holds, measured = referee.check(f"{folder}/road.drive.xosc", BY_NAME[name]["truth"])
     assert all(holds.values()), (holds, run.description, measured["outcome"])
+
+
+@pytest.mark.parametrize("name", ["ncap:CCFtap", "r157:lateral_detection_range"])
+def test_with_traffic_on_the_left_everybody_moves_as_in_the_mirror_image(name: str) -> None:
+    # a turn at a junction; places, offsets and drifts sideways
+    plain, other = made(name, drives=True), made(name, drives=True, left_hand=True)
+    assert plain.drive is not None
+    assert plain.drive.others is not None
+    assert other.drive is not None
+    assert other.drive.others is not None
+    assert other.outcome == plain.outcome
+    (x, y, *_), (across, along, *_) = plain.drive.others.states.T, other.drive.others.states.T
+    assert np.nanmax(abs(across - x)) < 0.01
+    assert np.nanmax(along + y) - np.nanmin(along + y) < 0.01
 
 
 def test_slippery_places_let_the_tested_car_slip_there_and_nowhere_else() -> None:

@@ -174,7 +174,7 @@ class Cell:
         nominal = {} if self.request.words else {"lane_width": LANE_WIDTH}
         usual, values = World().values(), self.request.world.values().items()  # a store names all values
         world = World().changed(**nominal | {name: value for name, value in values if value != usual[name]})
-        world = world_for(brief, setup.staged(world))
+        world = world_for(brief, setup.staged(world, brief is not None and brief.left_hand))
         made = {"words": self.request.words or one.plan, "world": world, "setup": setup}
         return replace(self, request=self.request.model_copy(update=made), brief=brief)
 

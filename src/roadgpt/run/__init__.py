@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 from roadgpt import plugins
 from roadgpt.brief import NoRoomError, read
 from roadgpt.brief.model import Brief
+from roadgpt.brief.scenarios import scenario
 from roadgpt.brief.scene_fit import fitted
 from roadgpt.chat import Meter, ReplyError, counting
 from roadgpt.check import inspect, rules_of
@@ -100,13 +101,13 @@ def perform(
             cannot apply a setting of the world.
         DriverError: the driver hung while it was created.
     """
-    world = setup.staged(world)
     check_parts(setup, world)
     begun = time.perf_counter()
     meter = meter or Meter.of(setup.chat)
     before = meter.spent
     brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
-    request = Request(words=brief.words, seed=seed, world=world_for(brief, world), setup=setup)
+    world = world_for(brief, setup.staged(world, brief.left_hand))
+    request = Request(words=brief.words, seed=seed, world=world, setup=setup)
     brief = fitted(brief, request.world.scene, request.world.first_speed)
     check_parts(setup, request.world)
     own = seed_of(seed, index)
@@ -156,10 +157,11 @@ def prove(
             then has both the findings and the verdict. A road that is physically impossible to drive is never
             driven.
     """
-    world = setup.staged(world).in_scene_of(brief).on_surface_of(brief)
+    design, drawn = (None, blueprint.profile) if isinstance(blueprint, Road) else (blueprint, blueprint)
+    world = setup.staged(world, bool(drawn and drawn.left_hand))
+    world = world.in_scene_of(brief).on_surface_of(brief)
     check_parts(setup, world)
     begun = time.perf_counter()
-    design = None if isinstance(blueprint, Road) else blueprint
     road = made_from(blueprint, world, setup.geometry)
     if setup.drives:
         refuse_without_route(road, "driven")
@@ -172,8 +174,11 @@ def prove(
 
 @cache
 def check_parts(setup: Setup, world: World = USUAL) -> None:
-    """Checks that the rules, the simulator and the driver can be loaded, before the first road is made."""
+    """Checks that the rules, the scenario, the simulator and the driver can be loaded, before the first road
+    is made."""
     rules_of(setup.rules)
+    if setup.scenario:
+        scenario(setup.scenario)
     if setup.drives:
         refuse_ignored(plugins.find("simulators", setup.simulator), world, replays=bool(setup.tracks))
         driver_of(setup.driver)
