@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING
 from roadgpt import plugins
 from roadgpt.brief import NoRoomError, read
 from roadgpt.brief.model import Brief
-from roadgpt.brief.scenarios import scenario
 from roadgpt.brief.scene_fit import fitted
 from roadgpt.chat import Meter, ReplyError, counting
 from roadgpt.check import inspect, rules_of
@@ -113,10 +112,8 @@ def perform(
     own = seed_of(seed, index)
     with counting(meter, f"road {index}"):
         run = _designed(Run(request, index, own, brief=brief), brief, earlier)
-    designing = time.perf_counter() - begun
-    spent = meter.spent.since(before)
-    run = replace(run, spent=spent if spent.calls else None)
-    return _driven(replace(run, seconds=Seconds(designing)))
+    seconds, spent = Seconds(time.perf_counter() - begun), meter.spent.since(before)
+    return _driven(replace(run, spent=spent if spent.calls else None, seconds=seconds))
 
 
 def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Meter | None = None) -> Brief:
@@ -158,8 +155,7 @@ def prove(
             driven.
     """
     design, drawn = (None, blueprint.profile) if isinstance(blueprint, Road) else (blueprint, blueprint)
-    world = setup.staged(world, bool(drawn and drawn.left_hand))
-    world = world.in_scene_of(brief).on_surface_of(brief)
+    world = setup.staged(world, bool(drawn and drawn.left_hand)).in_scene_of(brief).on_surface_of(brief)
     check_parts(setup, world)
     begun = time.perf_counter()
     road = made_from(blueprint, world, setup.geometry)
@@ -174,11 +170,8 @@ def prove(
 
 @cache
 def check_parts(setup: Setup, world: World = USUAL) -> None:
-    """Checks that the rules, the scenario, the simulator and the driver can be loaded, before the first road
-    is made."""
+    """Checks that the rules, the simulator and the driver can be loaded, before the first road is made."""
     rules_of(setup.rules)
-    if setup.scenario:
-        scenario(setup.scenario)
     if setup.drives:
         refuse_ignored(plugins.find("simulators", setup.simulator), world, replays=bool(setup.tracks))
         driver_of(setup.driver)
@@ -243,8 +236,7 @@ def _driven(run: Run, despite_findings: bool = False) -> Run:
         driver = driver_of(setup.driver)  # a new driver for each road, so that nothing carries over
         recording = recording_of(setup)
         tracks = None if recording is None else recording.on(run.road, run.world)
-        how = setup.simulator, setup.keep_driving, tracks
-        drive = simulate(run.road, run.world, driver, run.seed, *how)
+        drive = simulate(run.road, run.world, driver, run.seed, setup.simulator, setup.keep_driving, tracks)
         verdict = judge(run.road, drive, run.world)
         run = replace(run, outcome=verdict.outcome, description=_sentence(verdict, drive))
         run = replace(run, drive=drive, verdict=verdict)

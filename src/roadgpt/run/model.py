@@ -45,8 +45,7 @@ class Setup(Parts):
         return {name: value for name, value in values.items() if value or name not in ("tracks", "scenario")}
 
     def staged(self, world: World, left_hand: bool) -> World:
-        """Returns the World with the scene of the scenario, on a road with traffic on the right or on the
-        left, and what its own scene adds to that."""
+        """Returns the World with the scene of the scenario for a side of traffic, and what its own adds."""
         if not self.scenario:
             return world
         return world.changed(scene=scenario(self.scenario).onto(world.scene, left_hand))
