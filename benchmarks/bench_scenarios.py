@@ -4,6 +4,7 @@ exported files by truths that were written before the scenarios were built.
     python benchmarks/bench_scenarios.py --referee FOLDER             all scenarios on their nominal roads
     python benchmarks/bench_scenarios.py --referee FOLDER --roads     on the roads of tests/traffic/roads.json
     python benchmarks/bench_scenarios.py --referee FOLDER --only 'r157:*' --seeds 20
+    python benchmarks/bench_scenarios.py --referee FOLDER --left-hand      roads and truths mirrored
 
 A pair of a scenario and a road is found, where every key of the truth holds; refused, with its sentence; or
 missed, with the keys that do not hold. On other roads than the nominal one only who is there, what they do,
@@ -12,6 +13,7 @@ and whether they meet is asked: numbers belong to the nominal road."""
 import argparse
 import importlib
 import json
+import re
 import shlex
 import sys
 import tempfile
@@ -20,7 +22,9 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
-from roadgpt.brief.scenarios import LANE_WIDTH, scenarios
+from roadgpt.brief.model import mirrored
+from roadgpt.brief.plan import read_plan
+from roadgpt.brief.scenarios import LANE_WIDTH, MIRRORED, scenarios
 from roadgpt.errors import DesignError, UsageError
 from roadgpt.road import World
 from roadgpt.run import Run, Setup, perform
@@ -32,12 +36,12 @@ ANYWHERE = ("kind", "where", "does", "n", "decel", "accel", "collides")
 """The keys of an actor that hold on any road."""
 
 
-def driven(name: str, plan: str = "", seed: int = 1, **of_world: Any) -> Run:
-    """Drives a scenario on its nominal road or that of a plan."""
-    one = scenarios()[name]
+def driven(name: str, plan: str = "", seed: int = 1, left_hand: bool = False, **of_world: Any) -> Run:
+    """Drives a scenario on its nominal road or that of a plan, or on its mirror image."""
+    brief = read_plan(plan or scenarios()[name].plan)
     world = World().changed(**({} if plan else {"lane_width": LANE_WIDTH}), **of_world)
     setup = Setup(driver="robot", reader="plan", scenario=name)
-    return perform(plan or one.plan, seed, world, setup)
+    return perform(mirrored(brief) if left_hand else brief, seed, world, setup)
 
 
 def judged(referee: Any, run: Run, truth: dict[str, Any]) -> tuple[list[str], dict[str, Any]]:
@@ -69,11 +73,15 @@ def main() -> None:
     args.add_argument("--only", default="*")
     args.add_argument("--seeds", type=int, default=1)
     args.add_argument("--road", type=int, default=0, help="only this road, from 1")
+    args.add_argument("--left-hand", action="store_true")
     args.add_argument("--verbose", action="store_true")
     given = args.parse_args()
     sys.path.insert(0, str(given.referee))
     referee = importlib.import_module("referee_traffic")
-    catalogue = json.loads((TRUTHS / "catalogue.json").read_text())["scenarios"]
+    truths = (TRUTHS / "catalogue.json").read_text()
+    if given.left_hand:
+        truths = re.sub(r"\b(?:left|right)\b", lambda side: MIRRORED[side[0]], truths)
+    catalogue = json.loads(truths)["scenarios"]
     roads = json.loads((TRUTHS / "roads.json").read_text())["roads"] if given.roads else [None]
     counts, unfit = Counter[str](), 0
     for number, road in enumerate(roads, 1):
@@ -84,26 +92,26 @@ def main() -> None:
                 continue
             unfit += not fits
             for seed in range(1, given.seeds + 1) if fits else ():
-                outcome, said = _outcome(referee, entry, road, seed, given.verbose)
+                outcome, said = _outcome(referee, entry, road, seed, given)
                 counts[outcome] += 1
                 print(f"{outcome:<8} {name:<42} {road['plan'] if road else ''}  {said}", flush=True)
     print(f"{dict(counts)}, and {unfit} pairs that do not fit by the list of roads")
 
 
 def _outcome(
-    referee: Any, entry: dict[str, Any], road: dict[str, Any] | None, seed: int, verbose: bool
+    referee: Any, entry: dict[str, Any], road: dict[str, Any] | None, seed: int, given: argparse.Namespace
 ) -> tuple[str, str]:
     words = iter(shlex.split(road.get("options", "")) if road else ())
     more = {key[2:].replace("-", "_"): float(value) for key, value in zip(words, words, strict=True)}
     more |= {"bank": more["bank"] / 100} if "bank" in more else {}
     try:
-        run = driven(entry["name"], road["plan"] if road else "", seed, **more)
+        run = driven(entry["name"], road["plan"] if road else "", seed, given.left_hand, **more)
     except (UsageError, DesignError) as error:
         return "refused", str(error)
     if run.outcome in ("INVALID", "ERROR") or run.drive is None:
         return "refused" if run.description.startswith("refused") else "error", run.description
     wrong, measured = judged(referee, run, anywhere(entry["truth"]) if road else entry["truth"])
-    more_said = json.dumps(referee.plain(measured), default=str) if verbose else ""
+    more_said = json.dumps(referee.plain(measured), default=str) if given.verbose else ""
     if not wrong:
         return "found", more_said
     faults = {key: value for key, value in measured["faults"].items() if value and key in wrong}

@@ -10,9 +10,11 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import numpy as np
 import pytest
 
 from outside_judge import SHARED
+from roadgpt.brief.model import mirrored
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.scenarios import LANE_WIDTH, chosen, points_of, scenario, scenarios
 from roadgpt.brief.scene import Scene
@@ -48,9 +50,11 @@ def referee() -> ModuleType:
         sys.path.remove(str(SHARED))
 
 
-def made(name: str, drives: bool) -> Run:
-    setup = Setup(driver="robot", reader="plan", scenario=name, drives=drives)
-    return perform(scenario(name).plan, 1, World().changed(lane_width=LANE_WIDTH), setup)
+def made(name: str, drives: bool, left_hand: bool = False) -> Run:
+    setup = Setup(driver="robot", scenario=name, drives=drives)
+    brief = read_plan(scenario(name).plan)
+    brief = mirrored(brief) if left_hand else brief
+    return perform(brief, 1, World().changed(lane_width=LANE_WIDTH), setup)
 
 
 def points(blocks: list[dict[str, list[Any]]], dropped: set[str]) -> int:
@@ -182,6 +186,19 @@ def test_silent_words_get_lanes_a_way_and_wide_bends() -> None:
     assert asked("turn x3", "nhtsa:lead_vehicle_slower").clauses[0].radius.lo == pytest.approx(82.3, abs=1)
 
 
+@pytest.mark.parametrize(
+    "plan",
+    [
+        "straight | lanes=2 against=2 && ego v=50; adult crossing left v=5",
+        "straight | lanes=3 against=3 divided && ego v=50; child crossing left",
+        "straight | lanes=3 against=1 left_hand && ego v=40; adult crossing right v=2..4",
+    ],
+)
+def test_a_road_is_long_enough_for_who_comes_from_beyond_all_of_its_lanes(plan: str) -> None:
+    run = perform(plan, 1, setup=Setup(driver="robot", reader="plan"))
+    assert run.description.startswith("hit "), run.description
+
+
 def test_the_tested_car_has_the_lanes_beside_it_that_the_scene_names() -> None:
     run = made("r157:cut_in_unavoidable_collision", drives=False)
     assert run.road is not None
@@ -199,6 +216,20 @@ def test_an_outside_judge_finds_the_scenario_in_the_exported_files(name: str, re
         export(run, folder, ["opendrive", "openscenario"], lambda said: None)
         holds, measured = referee.check(f"{folder}/road.drive.xosc", BY_NAME[name]["truth"])
     assert all(holds.values()), (holds, run.description, measured["outcome"])
+
+
+@pytest.mark.parametrize("name", ["ncap:CCFtap", "r157:lateral_detection_range"])
+def test_with_traffic_on_the_left_everybody_moves_as_in_the_mirror_image(name: str) -> None:
+    # a turn at a junction; places, offsets and drifts sideways
+    plain, other = made(name, drives=True), made(name, drives=True, left_hand=True)
+    assert plain.drive is not None
+    assert plain.drive.others is not None
+    assert other.drive is not None
+    assert other.drive.others is not None
+    assert other.outcome == plain.outcome
+    (x, y, *_), (across, along, *_) = plain.drive.others.states.T, other.drive.others.states.T
+    assert np.nanmax(abs(across - x)) < 0.01
+    assert np.nanmax(along + y) - np.nanmin(along + y) < 0.01
 
 
 def test_slippery_places_let_the_tested_car_slip_there_and_nowhere_else() -> None:

@@ -7,7 +7,7 @@ import ast
 import operator
 import re
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
 from functools import cache
@@ -34,6 +34,8 @@ FUNCTIONS: Mapping[str, Callable[..., Any]] = {
     "side": lambda offset: "left" if offset > 0 else "right",
 }
 """What formulas can have besides numbers, parameters and a minus. Left is positive."""
+SIDED = re.compile(r"\b(?:left|right|t=(?!0\b(?!\.))-?)")
+MIRRORED = {"left": "right", "right": "left", "t=": "t=-", "t=-": "t="}
 FORMULA, SPEEDS = re.compile(r"\{(.+?)\}"), re.compile(r"(?:\bv=|\bto=|\bspeed )(\{.+?\})")
 TABLE: dict[str, Any] = tomllib.loads(read_text(Path(__file__).with_name("scenarios.toml")))
 WORDS: Mapping[str, str] = TABLE.pop("words")
@@ -50,9 +52,9 @@ class Scenario(NamedTuple):
     """The name of its nominal road in ``ROADS``, as a template like ``scene``."""
     scene: str
     """A scene as in plans, with what is computed of the parameters in braces."""
-    parameters: Mapping[str, tuple[Value, str]]
+    parameters: Mapping[str, Sequence[Any]]
     """The nominal value of each, with its unit or what it means."""
-    grid: tuple[Mapping[str, tuple[Value, ...]], ...]
+    grid: Sequence[Mapping[str, Sequence[Any]]]
     """The standard grid: blocks, each a product of its lists."""
     values: Mapping[str, Value]
     given: tuple[str, ...] = ()
@@ -75,25 +77,25 @@ class Scenario(NamedTuple):
         """The plan of the nominal road."""
         return ROADS[self._filled(self.road).replace("_", " ")]
 
-    def onto(self, other: Scene) -> Scene:
-        """Returns the scene together with another one, such as its traffic and weather. Raises UsageError if
-        the values are no scene, or both say something else of one thing."""
+    def onto(self, other: Scene, left_hand: bool = False) -> Scene:
+        """Returns the scene, mirrored for traffic on the left, together with another one, such as its traffic
+        and weather. Raises UsageError if the values are no scene, or both say something else of one thing."""
         if self.fault:
             raise UsageError(self.fault)
         try:
-            own = read_scene(self.scene_text)
+            text = self.scene_text
+            own = read_scene(SIDED.sub(lambda word: MIRRORED[word[0]], text) if left_hand else text)
         except (BriefError, ZeroDivisionError) as error:
             said = "a number is divided by 0" if isinstance(error, ZeroDivisionError) else str(error)
             raise UsageError(f"the scenario '{self}' is not possible: {said}") from error
-        usual, fields = Scene(), dict(own)
-        for name, value in other:
-            if fields[name] not in (value, getattr(usual, name)) and value != getattr(usual, name):
+        told, added = (each.model_dump(exclude_defaults=True) for each in (own, other))
+        for name, value in added.items():
+            if told.get(name, value) != value:
                 raise UsageError(
                     f"the scenario '{self}' and the other scene both say the {name} of the scene, and "
                     "contradict each other; leave one of them out"
                 )
-            fields[name] = value if fields[name] == getattr(usual, name) else fields[name]
-        return Scene(**fields)
+        return Scene.model_validate(told | added)
 
     def points(self, grid: Grid, with_road: bool) -> "Iterator[Scenario]":
         """Yields the scenario itself, or with the values of all points of its standard grid, but for those
@@ -127,15 +129,11 @@ class Scenario(NamedTuple):
     def with_value(self, name: str, text: str) -> "Scenario":
         """Returns the scenario with another value of a parameter."""
         if name not in self.parameters:
-            known = f"its parameters are {', '.join(self.parameters)}"
-            raise UsageError(
-                f"the scenario {self.name} has no '{name}'; {_nearest(name, self.parameters) or known}"
-            )
+            near = _nearest(name, self.parameters) or f"its parameters are {', '.join(self.parameters)}"
+            raise UsageError(f"the scenario {self.name} has no '{name}'; {near}")
         usual, unit = self.parameters[name]
         if isinstance(usual, str):
-            words = dict.fromkeys(
-                [usual, *(str(each) for block in self.grid for each in block.get(name, ()))]
-            )
+            words = dict.fromkeys([usual, *(each for block in self.grid for each in block.get(name, ()))])
             if text not in words:
                 raise UsageError(f"'{name}' of {self.name} is {' or '.join(words)}, not '{text[:40]}'")
         try:
@@ -178,14 +176,8 @@ def _nearest(name: str, known: Mapping[str, Any]) -> str:
 @cache
 def scenarios() -> Mapping[str, Scenario]:
     """Returns all scenarios with their nominal values, by name."""
-    made = {}
-    for name, row in TABLE.items():
-        parameters = {each: (usual, said) for each, (usual, said) in row["parameters"].items()}
-        values = {each: usual for each, (usual, _) in parameters.items()}
-        made[name] = Scenario(
-            name, **{**row, "parameters": parameters, "grid": tuple(row["grid"])}, values=values
-        )
-    return made
+    usual = {name: {each: value for each, (value, _) in TABLE[name]["parameters"].items()} for name in TABLE}
+    return {name: Scenario(name, **row, values=usual[name]) for name, row in TABLE.items()}
 
 
 def chosen(text: str) -> list[Scenario]:
@@ -196,9 +188,7 @@ def chosen(text: str) -> list[Scenario]:
         name, *given = part.split()
         named = [each for each in scenarios().values() if fnmatchcase(each.name, name)]
         if not named:
-            near = _nearest(name, scenarios()) or _nearest(
-                name, {each.partition(":")[2]: 0 for each in scenarios()}
-            )
+            near = _nearest(name, scenarios())
             raise UsageError(f"there is no scenario '{name[:40]}'; {near or 'roadgpt scenarios lists them'}")
         for each in named:
             for word in given:

@@ -30,6 +30,8 @@ What = Literal[
 ]  # fmt: skip
 FLOWS: Mapping[Flow, int] = {"light": 5, "medium": 12, "dense": 25}
 """How many vehicles drive on each km of a lane."""
+USUAL: Mapping[str, int] = {"adult": 5, "child": 5, "bicycle": 15, "animal": 20}
+"""Speeds in km/h: those of Euro NCAP's persons (CPNA) and bicycle (CBNA); that of the animal is ours."""
 VEHICLES: tuple[ActorKind, ...] = ("car", "van", "truck", "bus", "motorcycle", "bicycle")
 MOVING: tuple[ActorKind, ...] = (*VEHICLES, "adult", "child", "animal")
 ANYTHING: tuple[ActorKind, ...] = get_args(ActorKind)

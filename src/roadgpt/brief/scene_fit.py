@@ -12,7 +12,7 @@ from roadgpt.brief.model import Brief, Clause, span
 from roadgpt.brief.normal import STRAIGHT
 from roadgpt.brief.outline import outline
 from roadgpt.brief.ranges import Range
-from roadgpt.brief.scene import ACROSS, FLOWS, LEAVES, Action, Role, Scene, Where
+from roadgpt.brief.scene import ACROSS, FLOWS, LEAVES, MOVING, USUAL, Action, Role, Scene, Where
 from roadgpt.errors import BriefError
 
 ROLLS = 4.0  # s at speed before anything happens
@@ -20,7 +20,7 @@ STOPS, ASIDE = 4.0, 6.0  # m/s2: with which the tested car can stop, and that it
 SPARE = 10.0  # m, for where the tested car starts, and for its length
 JUNCTION = 20.0  # m, across one
 LANE = 3.5  # m from lane to lane
-VERGE = 12.0  # m, from the middle lane of three to who comes from beside the road
+VERGE = 8.0  # m, from the lanes to who comes from beside them; with a median, and what starting costs
 KMH = 3.6
 NEEDS: Mapping[Where, str] = {
     "lane": "two lanes in its direction; write lanes=2",
@@ -42,7 +42,7 @@ def fitted(brief: Brief, scene: Scene, limit: float) -> Brief:
     if brief.map is not None or not (scene.actors or scene.speed or scene.slippery or scene.turn):
         return brief
     speed = _most(scene.speed) / KMH if scene.speed else limit
-    before, stop = _until_stop(scene, speed), speed**2 / 2 / STOPS
+    before, stop = _until_stop(scene, speed, brief), speed**2 / 2 / STOPS
     if not brief.stretches:
         return _suited(brief, scene, speed, before, before + stop)
     places = [place for place in brief.junctions if place.kind not in (*LANE_KINDS, *RAMPS)]
@@ -66,29 +66,37 @@ def fitted(brief: Brief, scene: Scene, limit: float) -> Brief:
     return brief.model_copy(update={"stretches": stretches, "junctions": tuple(junctions)})
 
 
-def _until_stop(scene: Scene, speed: float) -> float:
+def _until_stop(scene: Scene, speed: float, brief: Brief) -> float:
     """Returns how far the tested car comes until everything has happened, in metres."""
-    roles, seconds = scene.actors, max([ROLLS, *(_lasts(role, speed) for role in scene.actors)])
+    lanes = [(road.lanes_text or "1+1").split("+") for road in brief.stretches or (brief,)]
+    along, against = (max(map(int, each)) for each in zip(*lanes, strict=True))
+    along = max(along, 1 + sum(scene.lanes_beside.values()))
+    near, far = (LANE * (each - 0.5) + VERGE for each in (along, along + against))
+    kerbs, roles = (None, "left" if brief.left_hand else "right"), scene.actors
+    seconds = [ROLLS, *(_lasts(role, speed, near if role.side in kerbs else far) for role in roles)]
     named = [role.station for role in roles] + [each.station for role in roles for each in role.actions]
     named += [each.station for each in scene.slippery]
     named += [role.gap for role in roles if role.where == "oncoming"]
-    return max(seconds * speed, *map(_most, named), 0.0) + SPARE
+    return max(max(seconds) * speed, *map(_most, named), 0.0) + SPARE
 
 
 def _most(amount: Amount | None) -> float:
     return 0.0 if amount is None else amount.hi or amount.lo or 0.0
 
 
-def _lasts(role: Role, speed: float) -> float:
-    """Returns after how many seconds what somebody does has happened."""
-    own = _most(role.speed) / KMH if role.speed else max(speed + _most(role.faster) / KMH, 0.0)
-    own = own if role.kind not in ("cones", "barrier", "lost_load") else 0.0
+def _lasts(role: Role, speed: float, across: float) -> float:
+    """Returns after how many seconds what somebody does has happened; ``across`` is how many metres who comes
+    from beside the road has to go if nothing is said."""
+    usual = speed if role.faster or role.kind not in USUAL else USUAL[role.kind] / KMH
+    own = _most(role.speed) / KMH if role.speed else max(usual + _most(role.faster) / KMH, 0.0)
+    own *= role.kind in MOVING
     closing = speed + own if role.where == "oncoming" else speed - own
     gap = _most(role.gap) or _most(role.lead) or _most(role.headway) * speed
     meets = gap / closing if closing > 1.0 and role.where in ("ahead", "lane", "far", "oncoming") else 0.0
     if role.where in ACROSS and own > 0:
+        own = span(role.speed).lo / KMH if role.speed and role.speed.lo else own
         rates = [abs(_most(each.accel)) for each in role.actions if each.accel]
-        walks = (_most(role.away) or VERGE) / own + sum(own / 2 / rate for rate in rates if rate)
+        walks = (_most(role.away) or across) / own + sum(own / 2 / rate for rate in rates if rate)
         meets = max(ROLLS + 2.0, walks + 1.0)  # they are never there sooner
     lasts, now = max((_most(each.time) for each in role.actions), default=0.0) or ROLLS, own
     for action in role.actions:

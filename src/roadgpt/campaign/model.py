@@ -108,8 +108,7 @@ class Result:
     """Largest share of the car that was outside its lane at one time, 0 to 1."""
     beyond: float | None = None
     """Largest distance of the car's body beyond the lane marking, metres. None if the road was not driven,
-    or if an earlier version of RoadGPT wrote the result.
-    """
+    or if an earlier version of RoadGPT wrote the result."""
     at_s: float | None = None
     """Station of the failure, metres along the road; None if the car did not fail."""
     side: Side | None = None
@@ -174,7 +173,7 @@ class Cell:
         nominal = {} if self.request.words else {"lane_width": LANE_WIDTH}
         usual, values = World().values(), self.request.world.values().items()  # a store names all values
         world = World().changed(**nominal | {name: value for name, value in values if value != usual[name]})
-        world = world_for(brief, setup.staged(world))
+        world = world_for(brief, setup.staged(world, brief is not None and brief.left_hand))
         made = {"words": self.request.words or one.plan, "world": world, "setup": setup}
         return replace(self, request=self.request.model_copy(update=made), brief=brief)
 

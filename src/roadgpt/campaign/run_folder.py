@@ -463,9 +463,10 @@ def campaign(
         UsageError: the folder contains something other than this campaign, something that decides results has
             changed since its first road was made, or a plug-in is not installed.
     """
-    meter, world = meter or Meter.of(setup.chat), setup.staged(world)
+    meter = meter or Meter.of(setup.chat)
     brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
-    request = Request(words=brief.words, seed=seed, world=world_for(brief, world), setup=setup)
+    world = world_for(brief, setup.staged(world, brief.left_hand))
+    request = Request(words=brief.words, seed=seed, world=world, setup=setup)
     designer_of(setup.designer, setup.chat)
     check_parts(setup, request.world)
     return Campaign.opened(request, brief, n, out, again, draw, meter)

@@ -100,22 +100,20 @@ def perform(
             cannot apply a setting of the world.
         DriverError: the driver hung while it was created.
     """
-    world = setup.staged(world)
     check_parts(setup, world)
     begun = time.perf_counter()
     meter = meter or Meter.of(setup.chat)
     before = meter.spent
     brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
-    request = Request(words=brief.words, seed=seed, world=world_for(brief, world), setup=setup)
+    world = world_for(brief, setup.staged(world, brief.left_hand))
+    request = Request(words=brief.words, seed=seed, world=world, setup=setup)
     brief = fitted(brief, request.world.scene, request.world.first_speed)
     check_parts(setup, request.world)
     own = seed_of(seed, index)
     with counting(meter, f"road {index}"):
         run = _designed(Run(request, index, own, brief=brief), brief, earlier)
-    designing = time.perf_counter() - begun
-    spent = meter.spent.since(before)
-    run = replace(run, spent=spent if spent.calls else None)
-    return _driven(replace(run, seconds=Seconds(designing)))
+    seconds, spent = Seconds(time.perf_counter() - begun), meter.spent.since(before)
+    return _driven(replace(run, spent=spent if spent.calls else None, seconds=seconds))
 
 
 def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Meter | None = None) -> Brief:
@@ -156,10 +154,10 @@ def prove(
             then has both the findings and the verdict. A road that is physically impossible to drive is never
             driven.
     """
-    world = setup.staged(world).in_scene_of(brief).on_surface_of(brief)
+    design, drawn = (None, blueprint.profile) if isinstance(blueprint, Road) else (blueprint, blueprint)
+    world = setup.staged(world, bool(drawn and drawn.left_hand)).in_scene_of(brief).on_surface_of(brief)
     check_parts(setup, world)
     begun = time.perf_counter()
-    design = None if isinstance(blueprint, Road) else blueprint
     road = made_from(blueprint, world, setup.geometry)
     if setup.drives:
         refuse_without_route(road, "driven")
@@ -238,8 +236,7 @@ def _driven(run: Run, despite_findings: bool = False) -> Run:
         driver = driver_of(setup.driver)  # a new driver for each road, so that nothing carries over
         recording = recording_of(setup)
         tracks = None if recording is None else recording.on(run.road, run.world)
-        how = setup.simulator, setup.keep_driving, tracks
-        drive = simulate(run.road, run.world, driver, run.seed, *how)
+        drive = simulate(run.road, run.world, driver, run.seed, setup.simulator, setup.keep_driving, tracks)
         verdict = judge(run.road, drive, run.world)
         run = replace(run, outcome=verdict.outcome, description=_sentence(verdict, drive))
         run = replace(run, drive=drive, verdict=verdict)

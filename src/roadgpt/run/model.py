@@ -44,9 +44,11 @@ class Setup(Parts):
         values: dict[str, Any] = fields(self)
         return {name: value for name, value in values.items() if value or name not in ("tracks", "scenario")}
 
-    def staged(self, world: World) -> World:
-        """Returns the World with the scene of the scenario, and what its own scene adds to that."""
-        return world.changed(scene=scenario(self.scenario).onto(world.scene)) if self.scenario else world
+    def staged(self, world: World, left_hand: bool) -> World:
+        """Returns the World with the scene of the scenario for a side of traffic, and what its own adds."""
+        if not self.scenario:
+            return world
+        return world.changed(scene=scenario(self.scenario).onto(world.scene, left_hand))
 
     def essence(self) -> Self:
         """Returns the Setup without the fields that may change when interrupted work is continued."""

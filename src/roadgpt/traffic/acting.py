@@ -12,7 +12,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from roadgpt.brief.junctions import Side
-from roadgpt.brief.scene import ALONG, CUES, DOINGS, MOVING, NUMBERS, Action, Role, What, Where
+from roadgpt.brief.scene import ALONG, CUES, DOINGS, MOVING, NUMBERS, USUAL, Action, Role, What, Where
 from roadgpt.errors import SceneError
 from roadgpt.traffic.actor import SIZES, STEP
 from roadgpt.traffic.following import HARDEST, JAM, idm, time_over
@@ -38,8 +38,6 @@ INTO = 1.0  # s of headway with which one turns in or merges ahead of the tested
 STANDS = 2.0  # m between several alike that stand
 ONCOMING = 40.0  # m between several alike that come towards the tested car
 NEAR = 10.0  # m before the meeting, where a vehicle waits at a junction
-USUAL: Mapping[str, float] = {"adult": 5 / 3.6, "child": 5 / 3.6, "bicycle": 15 / 3.6, "animal": 20 / 3.6}
-"""Speeds in m/s: those of Euro NCAP's persons (CPNA) and bicycle (CBNA); that of the animal is ours."""
 LATERAL: Mapping[What, float] = {
     "swerve": 0.5, "drift": 0.5, "cut_in": 1.5, "cut_out": 1.5, "change_lane": 1.0, "overtake": 1.5,
     "pull_out": 1.0, "wrong_way": 1.0,
@@ -252,7 +250,7 @@ class Act:
         if "faster" in self.n:
             return max(self.car.v + self.n["faster"], 0.0)
         if self.kind in USUAL:
-            return min(USUAL[self.kind], self.limit)
+            return min(USUAL[self.kind] / 3.6, self.limit)
         if self.role.actions and self.role.actions[0].what in ("turn_in", "turn_across"):
             return min(TURNING, self.limit)
         return self.limit if self.where == "oncoming" else min(self.car.v, self.limit) or self.limit

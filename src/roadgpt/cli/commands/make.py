@@ -107,12 +107,12 @@ def carry_out(
     given["reader"] = options.reader_of(given)
     chat = options.chat_of(given, given["reader"], given["designer"])
     setup = Setup(drives=not given.pop("no_drive"), chat=chat, **given)
-    world = setup.staged(world)
     draw = beside(pictures, axes, formats)
     meter = Meter.of(chat)
     brief = brief_of(words, world, setup, meter)
     if route:
         brief = brief.model_copy(update={"map": with_route(brief.map, route)})
+    world = setup.staged(world, brief.left_hand)
     if seed is None and out is not None:
         seed = seed_in(out)
     if seed is None:
@@ -465,7 +465,6 @@ def drive(
         reject_used(out)
     world = options.world_of(rest)
     setup = Setup(**rest)
-    world = setup.staged(world)
     with redirect_stdout(sys.stderr):
         check_parts(setup, world)  # reports a missing driver before any road is read
     roads = roads_in(files)
