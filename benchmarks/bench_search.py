@@ -39,7 +39,7 @@ from roadgpt.campaign.single_test import Task, execute, features_in, result_of
 from roadgpt.check import sbft_verdict
 from roadgpt.road import Limits, Road, Site, World, build
 from roadgpt.run import Request, Setup, brief_of, prove
-from roadgpt.run.sparseness import Sparseness, departure
+from roadgpt_sbft.sparseness import Sparseness, departure
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "explanation" / "search.md"
 BEGIN, END = "<!-- measured by benchmarks/bench_search.py -->", "<!-- end of what was measured -->"

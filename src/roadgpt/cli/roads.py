@@ -223,7 +223,7 @@ def source_of(
 
 def _source_in(file: str) -> "RoadSource":
     from roadgpt.campaign.selection import selection_of
-    from roadgpt.network.source import RoadSource, of_run, read_source
+    from roadgpt.network.source import OF_FILE, RoadSource, read_source
 
     if (place := selection_of(file)) is None or place.number is None:
         if Path(file).is_dir() and not Path(file, "road.json").is_file():
@@ -232,7 +232,9 @@ def _source_in(file: str) -> "RoadSource":
     run = place.run()
     if run.road is None:
         raise UsageError(f"{file} has no road: {run.description}")
-    return RoadSource(run.road, (), of_run(run.request.world), file)
+    values = run.request.world.values()
+    stated = {name: values[name] for name in (*OF_FILE, "scene") if values[name] != ""}
+    return RoadSource(run.road, (), stated, file)
 
 
 def on_a_map(

@@ -36,9 +36,8 @@ NAMES = ("_id", "id", "name", "test_id")  # keys of a test that may hold its nam
 
 class RoadSource(NamedTuple):
     """What a road file holds. ``remarks`` are sentences about what was changed, ignored or unusual in it.
-    ``world`` has the fields of a World that it states for its road; see ``OF_FILE`` and, for runs,
-    ``of_run``. ``name`` is the id of a road in OpenDRIVE, whose name is the ``label``, or the name of the
-    test or file."""
+    ``world`` has the fields of a World that it states: ``OF_FILE``, of a run also its scene. ``name`` is the
+    id of a road in OpenDRIVE, whose name is the ``label``, or the name of the test or file."""
 
     blueprint: Design | Road
     remarks: tuple[str, ...]
@@ -83,7 +82,8 @@ def read_sources(path: str | Path, wanted: str | None = None) -> list[RoadSource
             text = "[" + ",\n".join(line for line in text.splitlines() if line.strip()) + "]"
         data = text if ending in SUFFIXES else json_of(text)
         if path.name in OF_RUN and card.is_file():
-            world = of_run(World.model_validate(read_json(card, LARGEST)["request"]["world"]))
+            of_run = World.model_validate(read_json(card, LARGEST)["request"]["world"]).values()
+            world = {name: of_run[name] for name in (*OF_FILE, "scene") if of_run[name] != ""}
     except OSError as error:
         raise UsageError(f"cannot read {path}: {error.strerror}; give the path of a road file") from error
     except (ValueError, LookupError, TypeError) as error:
@@ -95,12 +95,6 @@ def read_sources(path: str | Path, wanted: str | None = None) -> list[RoadSource
     if not found:
         raise UsageError(f"{path}: there is no road {wanted} in it")
     return found
-
-
-def of_run(world: World) -> dict[str, Any]:
-    """Returns what the World of a run states for its road: ``OF_FILE``, and its scene if it has one."""
-    values = world.values()
-    return {name: values[name] for name in (*OF_FILE, *(["scene"] if values["scene"] else []))}
 
 
 def map_in(path: Path) -> "ImportedMap | None":
