@@ -32,14 +32,14 @@ from scipy.stats import bootstrap, mannwhitneyu
 
 from roadgpt.campaign import Cell, CellBudget, Result
 from roadgpt.campaign.behaviour import cell_of
-from roadgpt.campaign.generators.genetic import Genetic
-from roadgpt.campaign.generators.quality_diversity import QualityDiversity
-from roadgpt.campaign.generators.random_ import Random
 from roadgpt.campaign.single_test import Task, execute, features_in, result_of
 from roadgpt.check import sbft_verdict
 from roadgpt.road import Limits, Road, Site, World, build
 from roadgpt.run import Request, Setup, brief_of, prove
-from roadgpt.run.sparseness import Sparseness, departure
+from roadgpt_sbft.sparseness import Sparseness, departure
+from roadgpt_search.genetic import Genetic
+from roadgpt_search.quality_diversity import QualityDiversity
+from roadgpt_search.random_drafts import Random
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "explanation" / "search.md"
 BEGIN, END = "<!-- measured by benchmarks/bench_search.py -->", "<!-- end of what was measured -->"

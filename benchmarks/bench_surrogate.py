@@ -20,10 +20,10 @@ from scipy.stats import rankdata, spearmanr
 from sklearn.linear_model import RidgeCV
 from sklearn.preprocessing import StandardScaler
 
-from roadgpt.campaign.surrogate import Surrogate, hazard_of, target_of
-from roadgpt.campaign.variation import VariationContext, VariationTask, candidate_of, sketch
 from roadgpt.road import Limits, Site, World
 from roadgpt.run import Setup, brief_of, prove
+from roadgpt_search.surrogate import Surrogate, hazard_of, target_of
+from roadgpt_search.variation import VariationContext, VariationTask, candidate_of, sketch
 
 WORLD = World(site=Site(map_size=200.0, z_floor=0.0), limits=Limits(oob_tolerance=0.85))
 SPLITS = 8

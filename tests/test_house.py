@@ -17,7 +17,7 @@ from roadgpt import plugins
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "src" / "roadgpt"
-ANNEXES = ("roadgpt_beamng", "roadgpt_gym", "roadgpt_sbft", "roadgpt_study")
+ANNEXES = ("roadgpt_beamng", "roadgpt_gym", "roadgpt_sbft", "roadgpt_search", "roadgpt_study")
 HALLWAY = {"compiled", "errors", "plugins", "plural", "provenance", "reading", "children", "stopping"}
 TELLING = (
     "import atexit, sys; from roadgpt.cli import main; "

@@ -51,7 +51,7 @@ def nodes(points: Any) -> Points:
 def left_lane(points: Any, records: Any, before: float, after: float) -> Message | None:
     """Returns the fields of the Departure; None if the car did not leave its lane."""
     from roadgpt.run.execution import ExecutionRecord
-    from roadgpt.run.sparseness import departure
+    from roadgpt_sbft.sparseness import departure
 
     found = departure(points, [ExecutionRecord(*record) for record in records], before, after)
     return None if found is None else found._asdict()
@@ -60,7 +60,7 @@ def left_lane(points: Any, records: Any, before: float, after: float) -> Message
 def spread(segments: Any) -> tuple[float, float]:
     """Returns mean and standard deviation of the competition's sparseness of segments: points ``(n, 2)`` of
     the road around each failure."""
-    from roadgpt.run.sparseness import Sparseness
+    from roadgpt_sbft.sparseness import Sparseness
 
     found = Sparseness()
     for number, points in enumerate(segments):
@@ -104,7 +104,7 @@ def tell(
 
 def distance(one: Any, other: Any) -> float:
     """Returns the competition's edit distance between two sequences of points ``(n, 2)``."""
-    from roadgpt.run.sparseness import distances, steps_of
+    from roadgpt.run.step_distance import distances, steps_of
 
     return float(distances(steps_of(one), [steps_of(other)])[0])
 

@@ -16,7 +16,7 @@ from roadgpt.check.sbft import TOO_FEW
 from roadgpt.errors import PartError, RoadGPTError, UsageError
 from roadgpt.road import ORACLES, Limits, Road, Site, World
 from roadgpt.run import Draw, Request, Run, Seconds, Setup, check_parts, prove
-from roadgpt.run.model import LostDrives
+from roadgpt.run.model import MOST, given_up
 from roadgpt.stopping import look
 from roadgpt_sbft.client import Message
 from roadgpt_sbft.generator_process import GeneratorExitedError, GeneratorProcess
@@ -64,7 +64,7 @@ class Competition:
     """How the generator ended; None while it is running."""
     tests: int = 0
     _deadline: float = field(default=0.0, repr=False)
-    _losses: LostDrives[int] = field(default_factory=LostDrives, repr=False)
+    _lost: int = field(default=0, repr=False)  # drives in a row
     _is_begun: bool = field(default=False, repr=False)
     """Whether there are results or a log to keep."""
 
@@ -154,8 +154,9 @@ class Competition:
             }
         )
         yield run
-        if self._losses.count(run.index, run.is_lost):
-            raise self._losses.given_up(
+        self._lost = self._lost + 1 if run.is_lost else 0
+        if self._lost >= MOST:
+            raise given_up(
                 run.description,
                 f"the tests until then are in {self.folder}; a generator cannot be resumed, so repair the "
                 "simulator and start it again",

@@ -15,14 +15,14 @@ import numpy as np
 from pydantic import Field
 
 from roadgpt.brief.model import Frozen
-from roadgpt.campaign.run_folder import Campaign, finished_run
+from roadgpt.campaign.run_folder import Campaign, counted
 from roadgpt.errors import UsageError, explained
 from roadgpt.geometry import interpolate
 from roadgpt.run import Run
 from roadgpt.run.atomic import json_text, missing
 from roadgpt.run.execution import features_of, records_of
 from roadgpt.run.folder import RUNS, write_run_folder
-from roadgpt.run.tables import SETTINGS, TallyEntry, write_settings
+from roadgpt_sbft.tables import SETTINGS, write_settings
 
 HOME = Path("results")
 LOG = "generator.log"
@@ -79,7 +79,7 @@ class Results(Campaign):
         test = test_of(run)
         write_run_folder(run, self.folder, self.draw)
         text = json_text(test, indent=None)
-        self.keep(replace(finished_run(run), test_file=text, entry=TallyEntry.of(run)))
+        self.keep(replace(counted(run), test_file=text))
         self.roads = len(self.tests)
         return test
 

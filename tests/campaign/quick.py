@@ -21,8 +21,8 @@ from roadgpt.campaign.model import Cell, CellBudget, Pool, Proposal, Result
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import STORE, Store
 from roadgpt.campaign.single_test import FinishedTest, Task
-from roadgpt.campaign.surrogate import RoadSamples, features_of_samples
 from roadgpt.road import Design, Road, Segment, World
+from roadgpt_search.surrogate import RoadSamples, features_of_samples
 
 OUTCOMES = ("PASS", "FAIL", "INVALID", "ERROR", "VALID")
 

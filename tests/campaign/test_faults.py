@@ -33,7 +33,6 @@ from roadgpt.campaign.faults.stability import (
     drive_disturbed,
     repeated,
 )
-from roadgpt.campaign.surrogate import NAMES
 from roadgpt.check import inspect
 from roadgpt.cli.app import app
 from roadgpt.drive import COLUMNS, Box, Columns, Command, Drive, View
@@ -41,6 +40,7 @@ from roadgpt.errors import DriverError, UsageError
 from roadgpt.road import ORACLES, CrossSection, Design, Limits, Road, Segment, Site, World, build
 from roadgpt.run import Request, Run, Setup, prove, write_run
 from roadgpt.verdict import Verdict, judge
+from roadgpt_search.surrogate import NAMES
 
 WORLD = World()
 BOX = Box(4.7, 1.86)

@@ -124,3 +124,13 @@ def test_rain_beside_words_sets_the_friction_and_says_so() -> None:
     result = roadgpt("run", "--plan", PLAN, "--scene", "rain 5", "--no-drive", "--no-plot", "--out", "out")
     assert "note: on the road: rain of 5 mm/h; friction 0.6" in result.output
     assert read_run(Path("out/runs/0001")).world.site.friction == 0.6
+
+
+def test_the_scene_of_a_run_that_is_driven_again_is_told_whatever_names_the_run() -> None:
+    roadgpt("run", "--plan", "straight 20", "--scene", "fog 60", "--no-drive", "--no-plot", "--out", "out")
+    names = ("out/1", "out/runs/0001", "out/runs/0001/road.json")
+    said = roadgpt("drive", *names).output
+    for name in names:
+        assert f"{name}: the scene of the run is left out; give it with --scene 'fog 60'" in said
+    assert "left out" not in roadgpt("drive", names[1], "--scene", "fog 60").output
+    assert "left out" not in roadgpt("check", names[1]).output

@@ -12,7 +12,7 @@ from roadgpt.errors import UsageError
 from roadgpt.road import Limits, Road, World
 from roadgpt.run import Request, Run, Setup, prove, read_run, write_run
 from roadgpt.run.execution import test_of as as_test
-from roadgpt.run.tables import Tally, TallyEntry
+from roadgpt_sbft.tables import Tally
 from run.doubles import TOO_STEEP, a_design
 
 NEVER = """
@@ -128,9 +128,9 @@ def test_what_was_not_driven_has_no_outcome_of_a_drive(runs: dict[str, Run]) -> 
 def test_runs_are_counted_as_what_they_were(runs: dict[str, Run]) -> None:
     tally = Tally()
     for run in (*runs.values(), runs["FAIL"]):
-        tally.add(TallyEntry.of(run))
+        tally.add(Tally.entry(run))
     assert tally.outcomes == {"PASS": 1, "FAIL": 2, "INVALID": 1, "VALID": 1, "ERROR": 1}
-    assert (tally.valid, tally.with_road) == (4, 5)
+    assert tally.valid == 4
     driven = [runs["PASS"].drive, runs["FAIL"].drive, runs["FAIL"].drive]
     assert tally.simulated == pytest.approx(sum(drive.duration for drive in driven if drive is not None))
     verdict = runs["FAIL"].verdict

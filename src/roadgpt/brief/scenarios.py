@@ -101,24 +101,24 @@ class Scenario(NamedTuple):
         """Yields the scenario itself, or with the values of all points of its standard grid, but for those
         that were given; without ``with_road`` none that differ only in their nominal road."""
         fixed = {*self.given, *([] if with_road else ["road"])}
-        seen = set[str]()
+        seen = set[tuple[Value, ...]]()
         for block in self.grid if grid == "standard" else ({},):
             lists = {name: each for name, each in block.items() if name not in fixed}
             for values in product(*lists.values()):
-                point = self._replace(values={**self.values, **dict(zip(lists, values, strict=True))})
-                if str(point) not in seen:
-                    seen.add(str(point))
-                    yield point
+                its = {**self.values, **dict(zip(lists, values, strict=True))}
+                if (key := tuple(its.values())) not in seen:
+                    seen.add(key)
+                    yield self._replace(values=its)
 
     @property
     def fault(self) -> str:
         """A sentence about a speed that nobody can have, or else nothing."""
         _, least, most, *_ = NUMBERS["speed"]
         for formula in SPEEDS.findall(self.scene):
-            if not least <= float(speed := self._filled(formula)) <= most:
+            if not least <= (speed := _computed(_parsed(formula[1:-1]).body, self.values)) <= most:
                 named = [name for name in self.values if re.search(rf"\b{name}\b", formula)]
                 given = " ".join(f"{name}={_text(self.values[name])}" for name in named)
-                said = f"{self.name}: {given} lead{'s' * (len(named) == 1)} to a speed of {speed} km/h"
+                said = f"{self.name}: {given} lead{'s' * (len(named) == 1)} to a speed of {_text(speed)} km/h"
                 return f"{said}; speeds are from {least} to {most}"
         return ""
 
@@ -205,11 +205,12 @@ def chosen(text: str) -> list[Scenario]:
     return [*found.values()]
 
 
-def points_of(text: str, grid: Grid, with_road: bool) -> tuple[list[Scenario], int]:
+@cache
+def points_of(text: str, grid: Grid, with_road: bool) -> tuple[tuple[Scenario, ...], int]:
     """Returns the points of the scenarios that a text names, and how many are left out because they lead to
     speeds below 0, which the grids of their sources exclude."""
     every = [point for each in chosen(text) for point in each.points(grid, with_road)]
-    found = [point for point in every if not point.fault]
+    found = tuple(point for point in every if not point.fault)
     return found, len(every) - len(found)
 
 

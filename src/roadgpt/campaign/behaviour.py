@@ -33,12 +33,12 @@ from roadgpt.brief.outline import outline
 from roadgpt.check.measures import measure
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road
-from roadgpt.run.execution import features_of
 from roadgpt.verdict import Verdict
 
 DRIVEN = ("STD_SA", "MEAN_LP", "MAX_LP")  # the features that a road has only after a drive
 DIRECTIONS = 36  # of 10 degrees each
 WIDEST = 1000.0  # m; larger radii count as this radius
+TIGHTEST = 0.2  # 1 + 2k is kept above this
 MOST_TURNS = 6  # that have features of their own
 DECIMALS = 6
 
@@ -89,15 +89,10 @@ def behaviour_of_samples(points: Array, heading: Array, brief: Brief | None) -> 
     return {name: round(float(value), DECIMALS) for name, value in out.items()}
 
 
-def behaviour_of_line(points: Array, axes: Sequence[str], brief: Brief | None) -> dict[str, float]:
-    """Computes features from points ``(n, 3)`` of the centre line, about one per metre. Returns, by name, the
-    features in ``axes`` that need no drive."""
-    found = features_of(points)
-    if not set(axes) <= {*found, *DRIVEN}:
-        step = np.diff(points[:, :2], axis=0)
-        heading = np.unwrap(np.arctan2(step[:, 1], step[:, 0]))
-        found |= behaviour_of_samples(points, heading, brief)
-    return {axis: found[axis] for axis in axes if axis in found}
+def curvature_of_lane(curvature: Array, middle: Array) -> Array:
+    """Returns the curvature in 1/m of the middle of the driven lane, from that of the centre line and the
+    offset of the middle in metres, positive to the left."""
+    return curvature / np.maximum(1 - middle * curvature, TIGHTEST)
 
 
 def among_others(verdict: Verdict) -> dict[str, float]:

@@ -12,7 +12,7 @@ from typing import Any
 
 from roadgpt.campaign.model import Cell, NumberedTest, Result
 from roadgpt.campaign.record import STORE, Record, no_road, no_tests
-from roadgpt.campaign.run_folder import Campaign, FolderStore, finished_run, writing
+from roadgpt.campaign.run_folder import Campaign, FolderStore, counted, finished_run, writing
 from roadgpt.errors import UsageError
 from roadgpt.road import Road
 from roadgpt.run import Request, Run, Setup, prove, read_run, store, write_run
@@ -27,7 +27,6 @@ from roadgpt.run.folder import (
     run_folder,
     write_again,
 )
-from roadgpt.run.tables import TallyEntry, write_description
 
 
 def is_store(folder: Path) -> bool:
@@ -183,9 +182,9 @@ def write_runs(folder: Path, out: Path) -> Iterator[Path]:
                         write_again(folder, number, place)
                     else:
                         write_run(run, place)
-                    runs.count(replace(finished_run(run), entry=TallyEntry.of(run)))
+                    runs.count(counted(run))
                     yield run_folder(place, number)
-                write_description(cell.request, roads, place)
+                runs.write_settings()
                 runs.write_tables()
                 if not is_again:
                     runs.write_card(is_finished=True)

@@ -152,11 +152,11 @@ class Cell:
     earlier ones, as in ``roadgpt run``."""
 
     @property
-    def points(self) -> tuple[list[Scenario], int]:
+    def points(self) -> tuple[tuple[Scenario, ...], int]:
         """The scenarios of its tests, with the values of their parameters, and how many points of their grids
         are left out; none if it does not test any."""
         if "scenario" not in self.settings:
-            return [], 0
+            return (), 0
         grid = self.settings.get("grid", "nominal")
         return points_of(self.settings["scenario"], grid, not self.request.words)
 

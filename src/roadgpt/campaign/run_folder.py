@@ -1,8 +1,8 @@
 """Folders of runs, as ``roadgpt run`` and each part of a study write them, as the stores of cells.
 
 Each folder has a record of its tests, see ``run.store``. The process that holds the folder's lock adds a row
-to it when the files of a Run are written; from then on the test has ended. The files are those of the SBFT
-competition.
+to it when the files of a Run are written; from then on the test has ended. Its tables are those of the
+plug-ins ``tables``.
 """
 
 import sqlite3
@@ -44,7 +44,6 @@ from roadgpt.run.folder import (
     write_again,
     write_run_folder,
 )
-from roadgpt.run.tables import DESCRIPTION, TABLES, Tally, TallyEntry, write_description
 from roadgpt.run.versions import Versions, joined, still, versions_now
 
 
@@ -65,13 +64,26 @@ class RunWriter:
         with writing(self.folders[cell]):
             write_run_folder(run, self.folders[cell], self.draw)
         kept = None if self.meter is None else run
-        return FinishedTest.of(run, task, test_file=test_text(run), entry=TallyEntry.of(run), run=kept)
+        return FinishedTest.of(run, task, test_file=test_text(run), entries=_entries(run), run=kept)
 
 
 def finished_run(run: Run) -> FinishedTest:
     """Converts the Run of an earlier session to a FinishedTest."""
     proposal = Proposal(run.design, run.seed, "draft" if run.words or run.brief else GIVEN)
     return FinishedTest.of(run, Task(run.index, run.index - 1, proposal))
+
+
+def counted(run: Run) -> FinishedTest:
+    """Returns what ``finished_run`` does, with what the tables count."""
+    return replace(finished_run(run), entries=_entries(run))
+
+
+def _entries(run: Run) -> dict[str, Any]:
+    return {name: plugins.find("tables", name).entry(run) for name in plugins.names("tables")}
+
+
+def _tables() -> dict[str, Any]:
+    return {name: plugins.find("tables", name)() for name in plugins.names("tables")}
 
 
 def writing(folder: Path) -> AbstractContextManager[None]:
@@ -102,7 +114,7 @@ class Campaign:
     """Draws pictures into the folders of Runs; None: no pictures."""
     meter: Meter = field(default_factory=Meter)
     """Counts the tokens and cost of language models, including those of earlier sessions in the folder."""
-    _tally: Tally = field(default_factory=Tally)
+    _tables: dict[str, Any] = field(default_factory=_tables)
     _held_back: list[FinishedTest] = field(default_factory=list)
 
     @classmethod
@@ -173,7 +185,7 @@ class Campaign:
         except UsageError:
             return
         if run.index == index:
-            self.count(replace(finished_run(run), entry=TallyEntry.of(run)))
+            self.count(counted(run))
             self.meter.add(run.spent or Spent())
 
     def cell(self, name: str) -> Cell:
@@ -197,8 +209,13 @@ class Campaign:
                 places = self.folder / test_name(number), run_folder(self.folder, number)
                 if not all(place.exists() for place in places):
                     write_again(self.folder, number, self.folder)
-            write_description(self.request, self.roads, self.folder)
+            self.write_settings()
         return False
+
+    def write_settings(self) -> None:
+        """Writes the tables that do not change with each road."""
+        for each in self._tables.values():
+            each.describe(self.request, self.roads, self.folder)
 
     def add(self, ended: FinishedTest) -> list[FinishedTest]:
         """Writes the file of a test that has ended, and then the tables; returns the tests that were written.
@@ -206,7 +223,7 @@ class Campaign:
         none can be."""
         self.versions = joined(self.versions, ended.driver_files, self.folder)
         self._held_back.append(ended)
-        if not (self._tally.with_road or (ended.entry and ended.entry.has_road)):
+        if not any(one.has_road for one in (ended, *self.tests.values())):
             return []
         written, self._held_back = self._held_back, []
         with writing(self.folder):
@@ -222,28 +239,29 @@ class Campaign:
         store.keep(self.folder, number, run_folder(self.folder, number), ended.test_file)
         write_whole(self.folder / test_name(number), ended.test_file)
         self.count(ended)
-        self._tally.write(self.folder)
+        self.write_tables()
 
     def remove(self, number: int) -> None:
         """Removes a test that has no drive, so that it is run when the campaign continues."""
         self.tests.pop(number, None)
-        self._tally = Tally()
+        self._tables = _tables()
         for ended in [*self.tests.values()]:
             self.count(ended)
         with writing(self.folder):
             store.remove(self.folder, number)
             remove_run(number, self.folder)
-            self._tally.write(self.folder)
+            self.write_tables()
 
     def write_tables(self) -> None:
         """Writes the tables, which count all tests in the folder."""
         with writing(self.folder):
-            self._tally.write(self.folder)
+            for each in self._tables.values():
+                each.write(self.folder)
 
     def close(self, draw: Draw | None = None) -> None:
         """Writes the tables, draws the picture of all roads, and marks the campaign as finished."""
         with writing(self.folder):
-            self._tally.write(self.folder)
+            self.write_tables()
             if draw is not None:
                 draw.of_campaign(self.folder)
             self.write_card(is_finished=True)
@@ -257,21 +275,22 @@ class Campaign:
                 self.failure = one.result.description
             self._held_back = []
             if self.tests:
-                self._tally.write(self.folder)
+                self.write_tables()
             else:
                 self.take_away(LOCK)
 
     def take_away(self, *names: str) -> None:
         """Removes ``campaign.json``, the tables and the files in ``names``; then ``runs/`` and the folders
         that were created for this session, if they are empty."""
-        every = (CARD, DESCRIPTION, *TABLES, store.STORE, *names)
+        tables = (name for each in self._tables.values() for name in each.files)
+        every = (CARD, *tables, store.STORE, *names)
         take_away((self.folder / name for name in every), (self.folder / RUNS, *self.made))
 
     def count(self, ended: FinishedTest) -> None:
         """Counts a test that has ended for the tables."""
         self.tests[ended.result.number] = replace(ended, test_file="", run=None)
-        if ended.entry is not None:
-            self._tally.add(ended.entry)
+        for name, entry in (ended.entries or {}).items():
+            self._tables[name].add(entry)
 
     def __repr__(self) -> str:
         done = f"{len(self.tests)} of {self.roads} roads"
@@ -367,7 +386,7 @@ class FolderStore(Record):
         """Enters tests that have ended into the tables, and writes their files; see ``Campaign.add``."""
         super().keep(ended, *rest)
         for name, one in ended:
-            if one.entry is None:  # its workers died, perhaps while they drew pictures
+            if one.entries is None:  # its workers died, perhaps while they drew pictures
                 task = Task(one.result.number, one.result.batch, one.result.proposal)
                 run = error_run(task, self._cells[name], one.result.description)
                 one = RunWriter({name: self._folders[name].folder}).written(run, task, name)

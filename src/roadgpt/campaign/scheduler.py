@@ -21,7 +21,7 @@ from roadgpt.campaign.workers import LostWorkerError, Shared, WorkerConfig
 from roadgpt.chat import ChatSettings
 from roadgpt.errors import BudgetError, RoadGPTError
 from roadgpt.road import Design
-from roadgpt.run.model import MOST, LostDrives
+from roadgpt.run.model import MOST, given_up
 from roadgpt.stopping import look
 
 REMEMBERED = 2048  # latest designs that a draft must differ from, 50 MB per worker; older ones are left out
@@ -388,7 +388,7 @@ class Scheduler:
         for out in again:
             self._store.reopen(out.schedule.cell.name, out.task.number, out.task.batch)
         self._outcomes["ERROR"] -= len(again)
-        self._error = LostDrives.given_up(self._lost[row[-1]][1], "fix it and continue")
+        self._error = given_up(self._lost[row[-1]][1], "fix it and continue")
 
     def _place(self, out: _Out) -> tuple[int, int]:
         return self._names.index(out.schedule.cell.name), out.task.number

@@ -17,7 +17,6 @@ from roadgpt.run import REFUSED, Run, Seconds, Setup, check_parts, perform, prov
 
 if TYPE_CHECKING:
     from roadgpt.campaign.traces import Trace
-    from roadgpt.run.tables import TallyEntry
 
 CONCERNS_ALL = (PartError, UsageError, ChatError)  # errors that are not due to one test
 
@@ -58,7 +57,8 @@ class FinishedTest:
     is_lost: bool = False  # true if the simulator itself failed, so that the test says nothing about the road
     driver_files: Mapping[str, str] = field(default_factory=dict)  # as in the Run
     test_file: str = ""  # of a folder of runs: text for ``test.NNNN.json``; empty if the file exists already
-    entry: "TallyEntry | None" = None  # what the tables of a folder of runs count
+    has_road: bool = True
+    entries: Mapping[str, Any] | None = None  # of a folder of runs: what each plug-in ``tables`` counts
     run: Run | None = None  # of a folder of runs; None if a worker or an earlier session ran the test
 
     @classmethod
@@ -66,8 +66,9 @@ class FinishedTest:
         cls, run: Run, task: Task, features: Mapping[str, float] | None = None, /, **rest: Any
     ) -> "FinishedTest":
         """Returns the test that ended with a Run; ``rest`` has fields that the Run does not have."""
-        spent = {name: getattr(run, name) for name in ("seconds", "spent", "is_lost", "driver_files")}
-        return cls(result_of(run, task, features or {}), error=run.trace, **spent, **rest)
+        rest |= {name: getattr(run, name) for name in ("seconds", "spent", "is_lost", "driver_files")}
+        has_road = run.road is not None
+        return cls(result_of(run, task, features or {}), error=run.trace, has_road=has_road, **rest)
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ from roadgpt.plural import plural
 
 if TYPE_CHECKING:
     from roadgpt.campaign.selection import Choice, Selection
+    from roadgpt.network.source import RoadSource
     from roadgpt.road import Design, Geometry, Road, World
     from roadgpt.run import Run
 
@@ -191,28 +192,13 @@ def source_of(
     What the file states goes before ``world``, that of the options, except for options that were typed, or
     the fields that ``told`` names. If the file defines lanes, a remark names the lane options that have no
     effect."""
-    from roadgpt.campaign.selection import selection_of
-    from roadgpt.network.source import OF_FILE, RoadSource, read_source
     from roadgpt.road import Road, World
 
-    scene = ""
-    if (place := selection_of(file)) and place.number is not None:
-        run = place.run()
-        if run.road is None:
-            raise UsageError(f"{file} has no road: {run.description}")
-        values = run.world.values()
-        scene, source = (
-            values["scene"],
-            RoadSource(run.road, (), {name: values[name] for name in OF_FILE}, file),
-        )
-    elif Path(file).is_dir() and not Path(file, "road.json").is_file():
-        raise UsageError(f"{file} is a folder without a road; give a road file, or the folder of a run")
-    else:
-        source = read_source(file)
-    blueprint, remarks, stated, *_ = source
-    context = click.get_current_context(silent=True)
+    blueprint, remarks, world_of_file, *_ = _source_in(file)
+    context, stated = click.get_current_context(silent=True), dict(world_of_file)
     told = (typed(context) if context else set()) if told is None else told
-    if scene and "scene" not in told and context and "scene" in context.params:
+    scene = stated.pop("scene", "")
+    if scene and not {"scene", "scenario"} & told and context and "scene" in context.params:
         remarks += (f"the scene of the run is left out; give it with --scene '{scene}'",)
     values, usual = world.values(), World().values()
     given = [each for each in WORLD if each.field in told or values.get(each.field) != usual.get(each.field)]
@@ -233,6 +219,22 @@ def source_of(
         verb = "has" if len(own) == 1 else "have"
         remarks += (f"the road has lanes of its own; {', '.join(own)} {verb} no effect on it",)
     return blueprint, world, remarks
+
+
+def _source_in(file: str) -> "RoadSource":
+    from roadgpt.campaign.selection import selection_of
+    from roadgpt.network.source import OF_FILE, RoadSource, read_source
+
+    if (place := selection_of(file)) is None or place.number is None:
+        if Path(file).is_dir() and not Path(file, "road.json").is_file():
+            raise UsageError(f"{file} is a folder without a road; give a road file, or the folder of a run")
+        return read_source(file)
+    run = place.run()
+    if run.road is None:
+        raise UsageError(f"{file} has no road: {run.description}")
+    values = run.request.world.values()
+    stated = {name: values[name] for name in (*OF_FILE, "scene") if values[name] != ""}
+    return RoadSource(run.road, (), stated, file)
 
 
 def on_a_map(

@@ -36,8 +36,8 @@ NAMES = ("_id", "id", "name", "test_id")  # keys of a test that may hold its nam
 
 class RoadSource(NamedTuple):
     """What a road file holds. ``remarks`` are sentences about what was changed, ignored or unusual in it.
-    ``world`` has the fields of a World that it states for its road; see ``OF_FILE``. ``name`` is the id of a
-    road in OpenDRIVE, whose name is the ``label``, or the name of the test or file."""
+    ``world`` has the fields of a World that it states: ``OF_FILE``, of a run also its scene. ``name`` is the
+    id of a road in OpenDRIVE, whose name is the ``label``, or the name of the test or file."""
 
     blueprint: Design | Road
     remarks: tuple[str, ...]
@@ -83,7 +83,7 @@ def read_sources(path: str | Path, wanted: str | None = None) -> list[RoadSource
         data = text if ending in SUFFIXES else json_of(text)
         if path.name in OF_RUN and card.is_file():
             of_run = World.model_validate(read_json(card, LARGEST)["request"]["world"]).values()
-            world = {name: of_run[name] for name in OF_FILE}
+            world = {name: of_run[name] for name in (*OF_FILE, "scene") if of_run[name] != ""}
     except OSError as error:
         raise UsageError(f"cannot read {path}: {error.strerror}; give the path of a road file") from error
     except (ValueError, LookupError, TypeError) as error:

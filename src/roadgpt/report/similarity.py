@@ -29,7 +29,7 @@ from roadgpt.design.variety import ENOUGH, POINTS, PlanShape, shape_of
 from roadgpt.errors import UsageError
 from roadgpt.network import refuse_without_route
 from roadgpt.road import Road
-from roadgpt.run.sparseness import distances, steps_of
+from roadgpt.run.step_distance import distances, steps_of
 
 Array = NDArray[np.float64]
 

@@ -1,10 +1,8 @@
-"""Defines the Run, which holds everything about one road from words to verdict, and its Request and seed; and
-counts lost drives, so that a command stops using a simulator that has lost three drives in a row.
-"""
+"""Defines the Run, which holds everything about one road from words to verdict, and its Request and seed."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Generic, Literal, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
 from pydantic import SerializerFunctionWrapHandler, model_serializer
@@ -200,26 +198,10 @@ def seed_of(seed: int, index: int) -> int:
     return int(drawn) >> (64 - SEED_BITS)
 
 
-Key = TypeVar("Key")
-MOST = 3  # in a row; each may have cost minutes of waiting for the simulator to start
+MOST = 3  # lost drives in a row; each may have cost minutes of waiting for the simulator to start
 
 
-class LostDrives(Generic[Key]):
-    """Counts how many drives in a row a simulator has lost."""
-
-    def __init__(self) -> None:
-        self.lost: list[Key] = []  # keys of the lost drives
-
-    def count(self, key: Key, is_lost: bool) -> bool:
-        """Counts the drive that ``key`` identifies; returns True if the last three drives were all lost."""
-        if not is_lost:
-            self.lost.clear()
-            return False
-        self.lost.append(key)
-        return len(self.lost) >= MOST
-
-    @staticmethod
-    def given_up(reason: str, again: str) -> GivenUpError:
-        """Returns the error to raise: with the message of the last drive, and how the rest can be driven
-        later."""
-        return GivenUpError(f"the simulator failed {MOST} times in a row and is given up ({reason}); {again}")
+def given_up(reason: str, again: str) -> GivenUpError:
+    """Returns the error for a simulator that has lost ``MOST`` drives in a row: with the message of the last
+    one, and how the rest can be driven later."""
+    return GivenUpError(f"the simulator failed {MOST} times in a row and is given up ({reason}); {again}")

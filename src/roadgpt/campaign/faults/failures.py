@@ -24,10 +24,10 @@ from numpy.typing import NDArray
 from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.spatial.distance import cdist, squareform
 
+from roadgpt.campaign.behaviour import curvature_of_lane
 from roadgpt.campaign.folder_record import open_record
 from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.record import Record
-from roadgpt.campaign.surrogate import curvature_of_lane
 from roadgpt.drive import Drive
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.geometry.curve import Array

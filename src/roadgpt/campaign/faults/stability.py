@@ -20,7 +20,7 @@ from roadgpt.errors import DriverError, SimulationError, SimulatorError
 from roadgpt.road import Road, World
 from roadgpt.run import Run
 from roadgpt.run.model import MOST as LOST_IN_A_ROW
-from roadgpt.run.model import LostDrives
+from roadgpt.run.model import given_up
 from roadgpt.verdict import Verdict, judge
 
 STABLE = 0.5  # share of drives that fail, from which a failure counts as stable
@@ -132,7 +132,7 @@ def outlasted(drive: Callable[[], T]) -> T:
             return drive()
         except SimulatorError as error:
             lost = error
-    raise LostDrives.given_up(str(lost), "fix it and run the same command again, which continues")
+    raise given_up(str(lost), "fix it and run the same command again, which continues")
 
 
 def repeated(run: Run, times: int) -> Stability:

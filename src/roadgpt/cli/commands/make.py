@@ -459,7 +459,7 @@ def drive(
     from roadgpt.cli.junit import suite_of, write_junit
     from roadgpt.run import Request, Setup, check_parts, prove, write_run
     from roadgpt.run.editing import reject_used
-    from roadgpt.run.model import LostDrives
+    from roadgpt.run.model import MOST, given_up
 
     if out is not None:
         reject_used(out)
@@ -472,7 +472,7 @@ def drive(
     request = Request(seed=seed, world=world, setup=setup)
     screen.request, screen.gate = request, gate
     tell_recording(screen, setup)
-    losses: LostDrives[str] = LostDrives()
+    lost = list[str]()  # drives in a row
 
     def driven(file: str, blueprint: "Design | Road", world: "World") -> "tuple[Row, Run]":
         with redirect_stdout(sys.stderr):  # what a user's driver prints is no row
@@ -481,9 +481,9 @@ def drive(
         screen.detail(f"{file}: {run.description}")
         for finding in run.findings:
             screen.detail(f"{file}: finding: {finding.sentence}")
-        if losses.count(file, run.is_lost):
-            advice = f"see to it and drive the roads from {losses.lost[0]} on again"
-            raise losses.given_up(run.description, advice)
+        lost[:] = [*lost, file] if run.is_lost else []
+        if len(lost) >= MOST:
+            raise given_up(run.description, f"see to it and drive the roads from {lost[0]} on again")
         if out is not None:
             write_run(run, made(out))
         return row_of(run, file), run

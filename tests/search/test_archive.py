@@ -9,15 +9,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadgpt.brief.element import Element
-from roadgpt.campaign.archive import (
+from roadgpt.campaign.behaviour import bounds_of
+from roadgpt.campaign.boundary_pairs import paired
+from roadgpt_search.archive import (
     ANYWHERE,
     NOVELTY,
     Archive,
     select,
     spread_out,
 )
-from roadgpt.campaign.behaviour import bounds_of
-from roadgpt.campaign.boundary_pairs import paired
 
 MAPS = [
     (("MAX_CURV", "STD_SA"), 25),

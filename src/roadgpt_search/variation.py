@@ -17,13 +17,12 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from roadgpt import check
 from roadgpt.brief.element import Element, Elements
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
 from roadgpt.brief.ranges import Range
-from roadgpt.campaign.behaviour import behaviour_of_line
-from roadgpt.campaign.surrogate import RoadSamples, RoadStations, features_of_samples, stations_of
+from roadgpt.campaign.behaviour import DRIVEN, behaviour_of_samples
+from roadgpt.check import inspect, sbft_verdict
 from roadgpt.design import draft_road
 from roadgpt.design.elements import as_written, design_of, elements_of
 from roadgpt.design.layout import MapPose, PlacedPlan, bends_of, keeps_clear, place, walk
@@ -35,6 +34,8 @@ from roadgpt.geometry.nearness import Complex
 from roadgpt.road import Design, World, build
 from roadgpt.road.design import MAX_INCLINE
 from roadgpt.road.road import MOST_CONTROL_POINTS, control_stations
+from roadgpt.run.execution import features_of
+from roadgpt_search.surrogate import RoadSamples, RoadStations, features_of_samples, stations_of
 
 STRAIGHTS = (1.0, 150.0)  # m
 TURNS = (12.0, 200.0)  # degrees
@@ -375,11 +376,11 @@ def validated(design: Design, setting: VariationContext, origin: str) -> Candida
     """Builds the road of a design; returns None if it violates a requirement or a rule."""
     try:
         road = setting.world.lay(build(design))
-        if check.inspect(road, setting.brief, setting.world):
+        if inspect(road, setting.brief, setting.world):
             return None
         if (
             setting.rules == "sbft"
-            and not check.sbft_verdict(road.control_points(), setting.world.site.map_size)[0]
+            and not sbft_verdict(road.control_points(), setting.world.site.map_size)[0]
         ):
             return None
     except (RoadGPTError, ValueError):  # a spline of this road cannot be laid: it is no candidate
@@ -466,6 +467,17 @@ def _driven_line(room: PlacedPlan, setting: VariationContext) -> Complex:
     return np.asarray(x + 1j * y)
 
 
+def _features_of_line(points: Array, axes: Sequence[str], brief: Brief | None) -> dict[str, float]:
+    """Computes features from points ``(n, 3)`` of the centre line, about one per metre. Returns, by name, the
+    features in ``axes`` that need no drive."""
+    found = features_of(points)
+    if not set(axes) <= {*found, *DRIVEN}:
+        step = np.diff(points[:, :2], axis=0)
+        heading = np.unwrap(np.arctan2(step[:, 1], step[:, 0]))
+        found |= behaviour_of_samples(points, heading, brief)
+    return {axis: found[axis] for axis in axes if axis in found}
+
+
 def _sketched(elements: Elements, room: PlacedPlan, origin: str, setting: VariationContext) -> Sketch:
     line, where = room.line, room.place
     knots, bends, length = bends_of(room.elements)
@@ -478,7 +490,7 @@ def _sketched(elements: Elements, room: PlacedPlan, origin: str, setting: Variat
     climb = np.concatenate([[0.0], np.cumsum(grade[:-1] * np.diff(line.s))])
     heights = np.interp(np.linspace(0.0, line.s[-1], len(plan)), line.s, climb)
     points = np.stack([plan.real + where.x, plan.imag + where.y, heights], axis=1)
-    features = behaviour_of_line(points, setting.axes, setting.brief)
+    features = _features_of_line(points, setting.axes, setting.brief)
     world = setting.world
     seen = features_of_samples(samples, world)
     return Sketch(elements, where, origin, features, seen, stations_of(samples, world))

@@ -8,8 +8,13 @@ import pytest
 from campaign.quick import features_of_road
 from roadgpt.brief import read
 from roadgpt.campaign.behaviour import behaviour_of
-from roadgpt.campaign.surrogate import NAMES, STEERING
-from roadgpt.campaign.variation import (
+from roadgpt.design import draft
+from roadgpt.geometry import interpolate
+from roadgpt.road import Design, Road, Site, World, build
+from roadgpt.run import prove
+from roadgpt.run.execution import features_of
+from roadgpt_search.surrogate import NAMES, STEERING
+from roadgpt_search.variation import (
     Kind,
     Sketch,
     VariationContext,
@@ -18,11 +23,6 @@ from roadgpt.campaign.variation import (
     sketch,
     sketch_of,
 )
-from roadgpt.design import draft
-from roadgpt.geometry import interpolate
-from roadgpt.road import Design, Road, Site, World, build
-from roadgpt.run import prove
-from roadgpt.run.execution import features_of
 
 WORLD = World(site=Site(map_size=200.0, z_floor=0.0))
 PLANS = ("| flat turns=1..", "turn x3 | up", "serpentine")

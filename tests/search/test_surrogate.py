@@ -9,7 +9,8 @@ from sklearn.ensemble import ExtraTreesRegressor
 from sklearn.metrics import r2_score
 
 from campaign.quick import features_of_road
-from roadgpt.campaign.surrogate import (
+from roadgpt.road import Design, Segment, World, build
+from roadgpt_search.surrogate import (
     LEAF,
     NAMES,
     TREES,
@@ -17,7 +18,6 @@ from roadgpt.campaign.surrogate import (
     grow,
     hazard_of,
 )
-from roadgpt.road import Design, Segment, World, build
 
 WORLD = World()
 

@@ -15,12 +15,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.brief.element import Elements
-from roadgpt.campaign.archive import Archive, is_far, select, spread_out, stacked
 from roadgpt.campaign.behaviour import DRIVEN
 from roadgpt.campaign.boundary_pairs import paired
 from roadgpt.campaign.model import GOALS, Cell, Goal, Pool, Proposal, Result
-from roadgpt.campaign.search import SearchGenerator
-from roadgpt.campaign.surrogate import (
+from roadgpt.design.elements import elements_of
+from roadgpt.design.variety import PlanShape
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Design
+from roadgpt_search.archive import Archive, is_far, select, spread_out, stacked
+from roadgpt_search.searching import SearchGenerator
+from roadgpt_search.surrogate import (
     FEWEST,
     FEWEST_FAILURES,
     MOST,
@@ -32,7 +36,7 @@ from roadgpt.campaign.surrogate import (
     hazard_of,
     target_of,
 )
-from roadgpt.campaign.variation import (
+from roadgpt_search.variation import (
     NUMERIC,
     Candidate,
     Kind,
@@ -42,10 +46,6 @@ from roadgpt.campaign.variation import (
     sketch,
     sketch_of,
 )
-from roadgpt.design.elements import elements_of
-from roadgpt.design.variety import PlanShape
-from roadgpt.geometry.curve import Array
-from roadgpt.road import Design
 
 KINDS: tuple[Kind, ...] = ("vary", "cross", "wild")
 OFTEN = (0.7, 0.27, 0.03)  # share of sketches of each kind, once there are results

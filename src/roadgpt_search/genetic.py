@@ -8,9 +8,9 @@ winners of small tournaments. The generator has no feature map and no surrogate,
 import numpy as np
 
 from roadgpt.campaign.model import Cell, Goal, Pool, Proposal, Result
-from roadgpt.campaign.search import SearchGenerator
-from roadgpt.campaign.variation import VariationTask
 from roadgpt.road import Design
+from roadgpt_search.searching import SearchGenerator
+from roadgpt_search.variation import VariationTask
 
 POPULATION = 20  # of the fittest
 TOURNAMENT = 3

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from sklearn.linear_model import LogisticRegression
 from sklearn.metrics import roc_auc_score
 
-from roadgpt.campaign.surrogate import (
+from roadgpt.road import World
+from roadgpt_search.surrogate import (
     RIDGE,
     DepartureModel,
     RoadSamples,
@@ -15,7 +16,6 @@ from roadgpt.campaign.surrogate import (
     logistic,
     stations_of,
 )
-from roadgpt.road import World
 
 WORLD = World()
 TIGHT = 0.04  # 1/m

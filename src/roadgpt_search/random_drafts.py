@@ -5,8 +5,8 @@ results.
 """
 
 from roadgpt.campaign.model import Pool, Proposal
-from roadgpt.campaign.search import SearchGenerator
-from roadgpt.campaign.variation import VariationTask
+from roadgpt_search.searching import SearchGenerator
+from roadgpt_search.variation import VariationTask
 
 
 class Random(SearchGenerator):

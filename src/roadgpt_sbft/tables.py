@@ -1,4 +1,4 @@
-"""Writes the tables of a campaign, with the columns of the SBFT competition.
+"""Writes the tables of a folder of runs, with the columns of the SBFT competition.
 
 generation_stats.csv         counts, and wall-clock seconds
 oob_stats.csv                failures to the left and to the right, and the sparseness of failures
@@ -11,12 +11,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from roadgpt.run import Outcome, Request, Run, Seconds
 from roadgpt.run.atomic import csv_text, write_whole
 from roadgpt.run.execution import records_of
-from roadgpt.run.model import Outcome, Request, Run, Seconds
 
 if TYPE_CHECKING:
-    from roadgpt.run.sparseness import Departure, Sparseness  # only failures need it
+    from roadgpt_sbft.sparseness import Departure, Sparseness  # only failures need it
 
 TABLES = ("generation_stats.csv", "oob_stats.csv")
 DESCRIPTION = "experiment_description.csv"
@@ -29,12 +29,11 @@ ELSEWHERE = ("simulator", "designer", "chat")  # written in other columns; ``cha
 
 
 class TallyEntry(NamedTuple):
-    """The values of one Run that are counted in the tables of its campaign."""
+    """The values of one Run that are counted."""
 
     number: int  # number of the road, from 1
     outcome: Outcome
     is_valid: bool
-    has_road: bool
     seconds: Seconds
     simulated: float  # duration of the drive, seconds of simulated time; 0 if the road was not driven
     departure: "Departure | None"
@@ -45,21 +44,23 @@ class TallyEntry(NamedTuple):
         """Returns the values of a Run that the tables count."""
         found = None
         if run.outcome == "FAIL" and run.road is not None and run.drive is not None:
-            from roadgpt.run.sparseness import departure
+            from roadgpt_sbft.sparseness import departure
 
             found = departure(run.road.control_points(), records_of(run.road, run.drive, run.world))
         simulated = run.drive.duration if run.drive is not None else 0.0
-        return cls(run.index, run.outcome, run.is_valid, run.road is not None, run.seconds, simulated, found)
+        return cls(run.index, run.outcome, run.is_valid, run.seconds, simulated, found)
 
 
 class Tally:
-    """Counts the Runs of a campaign for the tables generation_stats.csv and oob_stats.csv."""
+    """Counts the Runs of a folder for the tables of the SBFT competition, and describes its settings."""
+
+    files = (*TABLES, DESCRIPTION)
+    entry = TallyEntry.of
 
     def __init__(self) -> None:
         self.outcomes: Counter[str] = Counter()
         self.sides: Counter[str] = Counter()
         self.valid = 0
-        self.with_road = 0
         self.designing = self.driving = self.simulated = 0.0
         self.spread: Sparseness | None = None
 
@@ -67,14 +68,13 @@ class Tally:
         """Adds a Run to the counts."""
         self.outcomes[entry.outcome] += 1
         self.valid += entry.is_valid
-        self.with_road += entry.has_road
         self.designing += entry.seconds.design
         self.driving += entry.seconds.drive
         self.simulated += entry.simulated
         if entry.departure is not None:
             self.sides[entry.departure.side] += 1
             if entry.departure.segment is not None:
-                from roadgpt.run.sparseness import Sparseness
+                from roadgpt_sbft.sparseness import Sparseness
 
                 self.spread = self.spread or Sparseness()
                 self.spread.add(entry.number, entry.departure.segment)
@@ -103,15 +103,15 @@ class Tally:
         for name, row in zip(TABLES, (generation, departures), strict=True):
             write_whole(folder / name, csv_text(row, [row.values()]))
 
-
-def write_description(request: Request, roads: int, folder: Path) -> None:
-    """Writes experiment_description.csv for a campaign."""
-    setup = request.setup
-    asked = {} if setup.chat is None else {"chat": setup.chat.model_dump_json(exclude_defaults=True)}
-    named = {key: value for key, value in setup.model_dump().items() if key not in ELSEWHERE}
-    named["oracle"] = request.world.limits.oracle
-    ours = {"description": request.words, "roads": roads, "seed": request.seed, **named, **asked}
-    write_settings(request, {"module_name": "roadgpt", "class_name": setup.designer}, ours, folder)
+    @staticmethod
+    def describe(request: Request, roads: int, folder: Path) -> None:
+        """Writes experiment_description.csv."""
+        setup = request.setup
+        asked = {} if setup.chat is None else {"chat": setup.chat.model_dump_json(exclude_defaults=True)}
+        named = {key: value for key, value in setup.model_dump().items() if key not in ELSEWHERE}
+        named["oracle"] = request.world.limits.oracle
+        ours = {"description": request.words, "roads": roads, "seed": request.seed, **named, **asked}
+        write_settings(request, {"module_name": "roadgpt", "class_name": setup.designer}, ours, folder)
 
 
 def write_settings(

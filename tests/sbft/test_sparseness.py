@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadgpt.run.execution import ExecutionRecord
-from roadgpt.run.sparseness import Sparseness, departure, distances, steps_of
+from roadgpt.run.step_distance import distances, steps_of
+from roadgpt_sbft.sparseness import Sparseness, departure
 
 Points = list[tuple[float, float]]
 

@@ -12,7 +12,11 @@ from hypothesis import strategies as st
 from roadgpt import check
 from roadgpt.brief import read
 from roadgpt.brief.element import Element, Elements
-from roadgpt.campaign.variation import (
+from roadgpt.check import sbft_verdict
+from roadgpt.design.elements import as_written, design_of, elements_of, segments_of
+from roadgpt.design.layout import MapPose
+from roadgpt.road import Design, Road, Segment, Site, World, build
+from roadgpt_search.variation import (
     MUTATIONS,
     Candidate,
     Kind,
@@ -23,10 +27,6 @@ from roadgpt.campaign.variation import (
     make_candidate,
     mutated,
 )
-from roadgpt.check import sbft_verdict
-from roadgpt.design.elements import as_written, design_of, elements_of, segments_of
-from roadgpt.design.layout import MapPose
-from roadgpt.road import Design, Road, Segment, Site, World, build
 
 WORLD = World(site=Site(map_size=200))
 FLAT, UPHILL, SERPENTINE = "| flat turns=1..", "turn x3 | up", "serpentine"

@@ -26,13 +26,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roadgpt.campaign.behaviour import curvature_of_lane
 from roadgpt.geometry.curve import Array
 from roadgpt.road import World
 
 STARTING = 25.0  # m, in which the car is still slow
 ENDING = 8.0  # m, that are not driven
 WINDOWS = (3, 7, 13, 21, 35)  # samples, about 1 m apart, over which curvature is averaged
-TIGHTEST = 0.2  # 1 + 2k is kept above this
 STRAIGHT = 0.01  # 1/m: less is straight enough to gain speed
 SHORTEST = 5  # m; a shorter stretch does not count as a straight
 LONGEST = 120.0  # m; on a longer straight the car gains no more speed
@@ -107,12 +107,6 @@ def features_of_samples(samples: RoadSamples, world: World) -> NDArray[np.float6
             max(float(-rush.min()), 0.0) / 10,
         ]
     )
-
-
-def curvature_of_lane(curvature: Array, middle: Array) -> Array:
-    """Returns the curvature in 1/m of the middle of the driven lane, from that of the centre line and the
-    offset of the middle in metres, positive to the left."""
-    return curvature / np.maximum(1 - middle * curvature, TIGHTEST)
 
 
 def steering_so_far(s: Array, lane: Array, world: World) -> Array:

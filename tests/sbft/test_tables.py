@@ -8,8 +8,8 @@ import pytest
 
 from roadgpt.road import CrossSection, Limits, Site, World
 from roadgpt.run.model import Request, Seconds, Setup
-from roadgpt.run.sparseness import Departure
-from roadgpt.run.tables import Tally, TallyEntry, write_description
+from roadgpt_sbft.sparseness import Departure
+from roadgpt_sbft.tables import Tally, TallyEntry
 
 STRAIGHT = np.column_stack([np.arange(10.0), np.zeros(10)])
 BENT = np.column_stack([10 * np.cos(np.arange(10) / 10), 10 * np.sin(np.arange(10) / 10)])
@@ -28,16 +28,16 @@ def left_at(side: str, points: np.ndarray | None) -> Departure:
 
 def test_every_column_counts_the_tests_that_it_names(tmp_path: Path) -> None:
     entries = [
-        TallyEntry(1, "PASS", True, True, Seconds(1.0, 10.0), 20.0, None),
-        TallyEntry(2, "FAIL", True, True, Seconds(2.0, 20.0), 30.0, left_at("left", STRAIGHT)),
-        TallyEntry(3, "FAIL", True, True, Seconds(4.0, 40.0), 40.0, left_at("right", BENT)),
-        TallyEntry(4, "FAIL", True, True, Seconds(8.0, 80.0), 50.00006, left_at("right", None)),
-        TallyEntry(5, "FAIL", True, True, Seconds(0.5, 0.25), 5.0, left_at("left", LONG)),
-        TallyEntry(6, "FAIL", True, True, Seconds(0.25, 0.125), 5.0, None),  # it was too slow
-        TallyEntry(7, "INVALID", False, True, Seconds(16.0, 0.0), 0.0, None),
-        TallyEntry(8, "ERROR", False, False, Seconds(32.0, 0.0), 0.0, None),
-        TallyEntry(9, "ERROR", True, True, Seconds(64.0, 160.0), 0.0, None),
-        TallyEntry(10, "VALID", True, True, Seconds(128.0, 0.0), 0.0, None),
+        TallyEntry(1, "PASS", True, Seconds(1.0, 10.0), 20.0, None),
+        TallyEntry(2, "FAIL", True, Seconds(2.0, 20.0), 30.0, left_at("left", STRAIGHT)),
+        TallyEntry(3, "FAIL", True, Seconds(4.0, 40.0), 40.0, left_at("right", BENT)),
+        TallyEntry(4, "FAIL", True, Seconds(8.0, 80.0), 50.00006, left_at("right", None)),
+        TallyEntry(5, "FAIL", True, Seconds(0.5, 0.25), 5.0, left_at("left", LONG)),
+        TallyEntry(6, "FAIL", True, Seconds(0.25, 0.125), 5.0, None),  # it was too slow
+        TallyEntry(7, "INVALID", False, Seconds(16.0, 0.0), 0.0, None),
+        TallyEntry(8, "ERROR", False, Seconds(32.0, 0.0), 0.0, None),
+        TallyEntry(9, "ERROR", True, Seconds(64.0, 160.0), 0.0, None),
+        TallyEntry(10, "VALID", True, Seconds(128.0, 0.0), 0.0, None),
     ]
     tally = Tally()
     for entry in entries:
@@ -55,7 +55,6 @@ def test_every_column_counts_the_tests_that_it_names(tmp_path: Path) -> None:
         "simulated_time_execution": "150.0001",
     }
     assert [*row_of(tmp_path / "generation_stats.csv").items()] == [*columns.items()]
-    assert tally.with_road == 9
     row = row_of(tmp_path / "oob_stats.csv")
     assert [row[name] for name in ("total_oob", "left_oob", "right_oob")] == ["4", "2", "2"]
     alone = {}
@@ -75,7 +74,7 @@ def test_every_column_counts_the_tests_that_it_names(tmp_path: Path) -> None:
 def test_fewer_than_two_failures_have_no_sparseness(failures: int, tmp_path: Path) -> None:
     tally = Tally()
     for number in range(failures):
-        tally.add(TallyEntry(number, "FAIL", True, True, Seconds(), 1.0, left_at("left", BENT)))
+        tally.add(TallyEntry(number, "FAIL", True, Seconds(), 1.0, left_at("left", BENT)))
     tally.write(tmp_path)
     row = row_of(tmp_path / "oob_stats.csv")
     assert list(row.values()) == [str(failures), str(failures), "0", "nan", "nan"]
@@ -89,7 +88,7 @@ def test_every_setting_is_in_the_description_of_an_experiment(tmp_path: Path) ->
         limits=Limits(speed_limit=50 / 3.6, oob_tolerance=0.85),
     )
     setup = Setup(reader="plan", driver="pure_pursuit", drives=False)
-    write_description(Request(words="| turns=3", seed=17, world=world, setup=setup), 12, tmp_path)
+    Tally.describe(Request(words="| turns=3", seed=17, world=world, setup=setup), 12, tmp_path)
     row = row_of(tmp_path / "experiment_description.csv")
     known = {
         "executor": setup.simulator,

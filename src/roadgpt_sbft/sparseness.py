@@ -1,10 +1,7 @@
 """Finds where cars left their lane and measures how much the failures differ, as the SBFT competition does.
 
-Each failure is represented by the road from 30 m before to 30 m after the place where the car left its lane,
-as a sequence of steps (change of direction, length). The difference between two failures is the weighted
-Levenshtein distance between their sequences: deleting or inserting a step costs 1, and substituting a step
-costs (da / (1 + da) + dl / (1 + dl)) / 2, where da (degrees) and dl (metres) are the differences between the
-two steps. Substitution costs nothing if da < 0.3 and dl < 0.2.
+Each failure is represented by the road from 30 m before to 30 m after the place where the car left its lane.
+The difference between two failures is that of these lines, see ``roadgpt.run.step_distance``.
 
 Source: the competition's tests_evaluation.py (2024), and the code it calls. Its peculiarities are kept, so
 that the competition's tools give the same figures for RoadGPT's files:
@@ -26,6 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 from roadgpt.errors import UsageError
 from roadgpt.geometry import interpolate
 from roadgpt.run.execution import ExecutionRecord
+from roadgpt.run.step_distance import distances, steps_of
 
 Array = NDArray[np.float64]
 
@@ -35,8 +33,6 @@ NODE = 0.55  # m from a node of the road: half the distance between nodes, and a
 SAME = 0.01  # m; a node this close to the start of a segment is that start
 FEWEST_POINTS = 4  # of a road, for the spline to be a cubic one
 DECIMALS = 4  # of the road that is interpolated once more
-EPS_DEGREES = 0.3
-EPS_METRES = 0.2
 
 
 class Departure(NamedTuple):
@@ -127,39 +123,6 @@ def _first_record(line: Array, start: Array, records: Sequence[ExecutionRecord])
         if np.hypot(*(at - start)) < SAME:
             return number
     return 0
-
-
-def steps_of(points: ArrayLike) -> Array:
-    """Returns steps ``(n - 1, 2)`` between points ``(n, 2)``: change of direction in degrees, length in
-    metres."""
-    move = np.diff(np.asarray(points, float), axis=0)
-    direction = np.degrees(np.arctan2(move[:, 1], move[:, 0]))
-    return np.stack([np.diff(direction, prepend=direction[:1]), np.hypot(*move.T)], axis=-1)
-
-
-def distances(one: Array, others: list[Array]) -> Array:
-    """Returns weighted Levenshtein distances ``(k,)`` from one sequence of steps to k others, all at once."""
-    wide = max((len(other) for other in others), default=0)
-    padded = np.full((len(others), wide, 2), 0.0)
-    for row, other in zip(padded, others, strict=True):
-        row[: len(other)] = other
-    column = np.arange(wide + 1.0)
-    dist = np.tile(column, (len(others), 1))
-    for i, step in enumerate(one, 1):
-        exchanged = dist[:, :-1] + _cost(step, padded)
-        best = np.empty_like(dist)
-        best[:, 0] = i
-        best[:, 1:] = np.minimum(exchanged, dist[:, 1:] + 1)
-        # inserting steps costs 1 each: the least value of any cell to the left plus its distance
-        dist = np.minimum.accumulate(best - column, axis=1) + column
-    return dist[np.arange(len(others)), [len(other) for other in others]]
-
-
-def _cost(step: Array, others: Array) -> Array:
-    turned = np.abs((step[0] - others[..., 0] + 180) % 360 - 180)
-    longer = np.abs(step[1] - others[..., 1])
-    cost = (turned / (1 + turned) + longer / (1 + longer)) / 2
-    return np.where((turned < EPS_DEGREES) & (longer < EPS_METRES), 0.0, cost)
 
 
 class Sparseness:
