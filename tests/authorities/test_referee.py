@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from outside_judge import SHARED, load_referee
@@ -20,7 +20,7 @@ from roadgpt.check.measures import LEAST_TURN, Measures, measure
 from roadgpt.check.truth import Truth, holds
 from roadgpt.design.designers.planner import Planner
 from roadgpt.errors import RoadGPTError
-from roadgpt.road import Design, World, build, read_design
+from roadgpt.road import Design, Segment, World, build, read_design
 from roadgpt_study.plan import read_prompts
 from strategies import designs, sensible_briefs
 
@@ -67,7 +67,19 @@ def test_what_the_referee_said_of_some_roads(number: int) -> None:
         assert holds(ours, Truth.model_validate(given_keys(row["truth"]))) == row["holds"], row
 
 
+# The last straight is level, falls and is level: it ends level, and as a whole hardly falls.
+LEVEL_AT_LAST = Design(
+    starting_point=(0, 0, 0),
+    theta=0,
+    segments=tuple(
+        Segment(distance=long, direction="left" if turn else "straight", turn_degrees=turn, incline=incline)
+        for long, turn, incline in ((15, 11, 0), (10, 0, 0), (10, 11, 0), (10, 0, 0), (10, 0, -2), (10, 0, 0))
+    ),
+)
+
+
 @given(design=designs(), seed=st.integers(0, 10**6))
+@example(design=LEVEL_AT_LAST, seed=65)
 def test_random_segment_lists_are_measured_and_judged_alike(referee: ModuleType, design, seed) -> None:
     points = build(design).centreline()
     try:

@@ -112,7 +112,7 @@ def _is_rounded_off(stretch: MeasuredFeature, asked: Range | None) -> bool:
     if stretch.kind != "straight" or asked is None or stretch.inner_grade not in asked:
         return False
     least = asked.lo if asked.lo > 0 else -asked.hi if asked.hi < 0 else 0.0
-    return 0 < least > abs(stretch.grade)
+    return LEVEL < least > abs(stretch.grade)  # who only goes up or down does so on average
 
 
 def turn_complaints(
