@@ -29,8 +29,9 @@ FAST, SLOW, MORE, JERK = 20.0, 5.0, 1.5, 2.5
 MORE m/s^2 more, in half of the time: ISO 15622."""
 EMERGENCY = 5.0  # m/s^2: where more is needed, emergency braking begins; the least that UN R152 asks for
 FULL, BUILD_UP = 0.85 * 9.81, 0.6  # m/s^2, s until it is reached: UN R157, Annex 4, Appendix 3, from R152
-AWAKE, AWAKE_FOR_OTHERS = 10 / 3.6, 20 / 3.6
-"""m/s, from which on UN R152 asks for emergency braking: before vehicles, before persons."""
+AWAKE, AWAKE_FOR_OTHERS = 9.5 / 3.6, 19.5 / 3.6
+"""m/s, from which on there is emergency braking before vehicles, and before persons: 10 and 20 km/h in UN
+R152, less what a test's speed may be off."""
 SHORT = 1.0  # m before somebody, where emergency braking wants to stand
 STRAIGHT = 1e-6  # 1/m; a smaller curvature limits no speed
 TURN = 2 * math.pi
@@ -63,8 +64,8 @@ class LaneCentring:
     Limits: persons, animals and things count only for emergency braking, and from ``sight`` metres on; fast
     cars may touch what stands there, which R152 allows above about 40 km/h. The warning that R152 asks for
     has no effect, because nobody is simulated who would heed it. Below these speeds the person at the wheel
-    brakes for everybody, and always for red lights; a robot does not, and is held where the car has stopped
-    itself.
+    brakes for everybody, and always for red lights. A robot does not, and sets the speed of the scene;
+    after an emergency braking ``reference`` is at the wheel.
 
     Args:
         strength: largest lateral acceleration that the steering gives, in m/s^2.
@@ -105,16 +106,20 @@ class LaneCentring:
         """Computes the middle of the lane, and forgets the last road."""
         self._by_person = [(way.start - TAKEN_OVER, way.end + GIVEN_BACK) for way in road.passages]
         self._is_robot = world.scene.person == "robot"
-        self._person, self._is_person = (Robot if self._is_robot else Reference)(), False
+        self._next, self._is_person = Reference(), False
+        self._person = Robot() if self._is_robot else self._next
         self.handed_to: str | None = None
         if self._by_person:
-            self._person.start(road, world, seed)
+            for each in {self._person, self._next}:
+                each.start(road, world, seed)
         s = stations(road)
         middle = world.profile_of(road).middle(s)
         self._line = line_along(road, middle)
         heights = road.at(s, middle)[:, 2].tolist()
         self._heights = heights + heights[-1:] * (len(self._line.x) - len(heights))
-        self._speed_limit, self._lane_limits = world.limits.speed_limit, lane_limits(road, world, self._line)
+        self._most = world.limits.speed_limit
+        self._speed_limit = world.first_speed if self._is_robot else self._most
+        self._lane_limits = lane_limits(road, world, self._line)
         self._sight = min(self.sight, visual_range(world.scene, "lane"))
         self._steps, self._bend, self._lateral, self._speed = 0, 0.0, 0.0, self._speed_limit
         self._waiting: deque[float] = deque()
@@ -162,14 +167,13 @@ class LaneCentring:
         is_vehicle = vehicles > 0
         closing = np.where(is_vehicle | (gap < self._sight), np.maximum(v - along, 0.0), 0.0)
         closing[count:] = 0.0  # red lights
-        needed = closing**2 / 2 / np.maximum(gap - SHORT, 0.1)
+        needed = closing**2 / 2 / np.maximum(gap - SHORT - closing * BUILD_UP / 2, 0.1)
         is_awake = v > np.where(is_vehicle, AWAKE, AWAKE_FOR_OTHERS)
         if (is_awake & (needed > EMERGENCY)).any():
             self._is_emergency = True
-        elif v < ROLLS and self._is_robot:
-            self._is_emergency &= bool((gap < self._sight).any())
-        elif v < ROLLS or not closing[gap < self._sight].any():
-            self._is_emergency = False
+        elif self._is_emergency and (v < ROLLS or not closing[gap < self._sight].any()):
+            self._is_emergency = self._is_robot = False
+            self._person, self._speed_limit = self._next, self._most
         share = min(max((FAST - v) / (FAST - SLOW), 0.0), 1.0)
         asked, jerk = -FULL, FULL / BUILD_UP
         if not self._is_emergency:
