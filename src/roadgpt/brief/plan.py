@@ -51,6 +51,7 @@ from roadgpt.brief.scene import (
     Light,
     Mark,
     Patch,
+    Person,
     Role,
     Scene,
     Surface,
@@ -248,7 +249,7 @@ AN_ACTION = _Language(
     {number.key: field for field, number in NUMBERS.items() if field in Action.model_fields},
     of="manoeuvre",
 )
-ITSELF = _Language(_words(turn=Way), {"v": "speed"}, of=TESTED_CAR)
+ITSELF = _Language(_words(turn=Way, person=Person), {"v": "speed"}, of=TESTED_CAR)
 SLIPPERY = "slippery"
 A_PATCH = _Language({}, {NUMBERS[field].key: field for field in Patch.model_fields}, of="slippery place")
 CONDITIONS = _words(flow=Flow, light=Light, surface=Surface)
@@ -522,7 +523,8 @@ def _made(model: type[Model], fields: dict[str, object], text: str) -> Model:
 
 def scene_plan(scene: Scene) -> str:
     """Returns a scene as it stands in a plan, such as "truck ahead gap=30: brake; medium"; "" for none."""
-    line = [" ".join([TESTED_CAR, *_written(scene, ITSELF)])] if scene.speed or scene.turn else []
+    itself = _written(scene, ITSELF)
+    line = [" ".join([TESTED_CAR, *itself])] if itself else []
     for role in scene.actors:
         actor = _marked([role.kind, *_times(role.count)], role, AN_ACTOR)
         actions = ", ".join(_marked([action.what], action, AN_ACTION) for action in role.actions)

@@ -18,6 +18,7 @@ ActorKind = Literal[
 ]  # fmt: skip
 Flow = Literal["light", "medium", "dense"]
 Light = Literal["night", "low_sun"]
+Person = Literal["robot"]
 Surface = Literal["wet", "snow", "ice"]
 Where = Literal[
     "ahead", "behind", "lane", "far", "oncoming", "crossing", "parked", "ramp", "junction", "crosswalk",
@@ -305,6 +306,8 @@ class Scene(Frozen):
     """The speed of the tested car at its start in km/h."""
     turn: Literal["left", "right", "straight"] | None = None
     """The way that the tested car takes at the first junction; None: that of the route."""
+    person: Person | None = None
+    """Who is at the wheel where a driver hands over, as in the catalogue; None: whom the driver chooses."""
     actors: tuple[Role, ...] = ()
     flow: Flow | None = None
     """How many vehicles drive in the lanes of the map: 5, 12 or 25 for each km and lane; None: nobody."""
@@ -400,6 +403,8 @@ def _parts(scene: Scene) -> Iterator[str]:
         yield f"the tested car starts at {scene.speed} km/h"
     if scene.turn:
         yield f"it goes {scene.turn} at the junction"
+    if scene.person:
+        yield f"a {scene.person} is at its wheel in place of a person"
     yield from map(str, scene.actors)
     for flow, name in ((scene.flow, "traffic"), (scene.oncoming, "oncoming traffic")):
         if flow:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from roadgpt.brief.scene import VEHICLES
 from roadgpt.drive.drive_monitor import STUCK_AMONG_OTHERS, STUCK_TIME
 from roadgpt.errors import UsageError
 from roadgpt.network import only_road
@@ -55,6 +56,7 @@ first. The kind of the first such incident is then the cause. A tyre off the roa
 speeding fail no test.
 """
 
+GIVES_WAY: tuple[Cause, ...] = ("stop line", "red light", "failure to yield")
 SOON = 3.0  # s after the cause of a failure, within which a contact is told in the same sentence
 
 FAILED: dict[Cause, str] = {
@@ -119,22 +121,29 @@ def judge(
     beyond = most_beyond(road, drive, world)
     handed_to = drive.handed_to(step) if cause else None
     outcome: Outcome = "FAIL" if cause else "PASS"
-    avoided_by, avoided = None, ""
-    if cause == "collision" and contact is not None:
+    avoided_by, avoided, excuse = None, "", ""
+    is_yielding = handed_to and cause in GIVES_WAY  # what came of it may be a matter of the brakes
+    hit = _contact_of(incidents or (), "collision", 0.0) if is_yielding or cause == "collision" else None
+    if hit is not None:
         from roadgpt.verdict.avoidable import avoidance_of
 
-        is_avoidable, avoided_by, avoided = avoidance_of(road, drive, world, contact)
-        outcome = "FAIL" if is_avoidable else "UNAVOIDABLE"
+        is_avoidable, avoided_by, avoided = avoidance_of(road, drive, world, hit)
+        outcome = "FAIL" if is_avoidable or cause != "collision" else "UNAVOIDABLE"
+    if handed_to and outcome == "FAIL":
+        excuse = f"{handed_to} drove where the car failed, so the failure is not {drive.driver}'s"
+        if hit and avoided_by and _asks_for_emergency_braking(drive, hit):
+            excuse = f"{handed_to} drove there, but emergency braking stays {drive.driver}'s"
+            handed_to = None
     if cause is None:
         description = _kept(drive, world, least, beyond, behind)
     else:
         whom = next((each.other for each in incidents or () if each.kind == cause), None)
         description = _failed(road, drive, world, step, cause, side, contact, whom, outcome)
     untold = [each for each in incidents or () if each is not contact or cause == "collision"]
-    description += _counted(untold, cause) + _who_drove(drive.shares, handed_to)
+    description += _counted(untold, cause) + _who_drove(drive.shares, excuse)
     s, x, y, time = (float(drive[name][step]) for name in ("s", "x", "y", "time"))
+    description += f"; {avoided}" * bool(avoided)
     if cause == "collision" and contact is not None:
-        description += f"; {avoided}"
         s, (x, y), time = contact.at_s, contact.at_xy, contact.at_time
     description += "".join(f"; {each}" for each in drive.missed)
     return Verdict(
@@ -217,12 +226,20 @@ def _counted(incidents: Sequence[Incident], cause: Cause | None) -> str:
     return "".join(f"; {each}" for each in words)
 
 
-def _who_drove(shares: Mapping[str, float], handed_to: str | None) -> str:
+def _asks_for_emergency_braking(drive: "Drive", contact: Incident) -> bool:
+    """Whether UN R152 asks for emergency braking at the speed before a contact."""
+    assert drive.others is not None
+    kind = next(each.kind for each in drive.others.actors if each.name == contact.other)
+    before = (drive["time"] > contact.at_time - SOON) & (drive["time"] <= contact.at_time)
+    return (10 if kind in VEHICLES else 20) <= round(3.6 * float(drive["speed"][before].max())) <= 60
+
+
+def _who_drove(shares: Mapping[str, float], excuse: str) -> str:
     if not shares:
         return ""
     (own, share), *others = shares.items()
     told = " and ".join(f"{name} for {percent(part)}" for name, part in others)
-    excuse = f"; {handed_to} drove where the car failed, so the failure is not {own}'s" if handed_to else ""
+    excuse = f"; {excuse}" * bool(excuse)
     return f"; {own} drove {percent(share)} of the way and handed over to {told}{excuse}"
 
 

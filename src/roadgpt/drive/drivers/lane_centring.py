@@ -10,6 +10,7 @@ import numpy as np
 
 from roadgpt.brief.visibility import visual_range
 from roadgpt.drive.drivers.reference import Reference
+from roadgpt.drive.drivers.robot import Robot
 from roadgpt.drive.driving_line import lane_limits, line_along, pedals_for, stations
 from roadgpt.drive.keeping_distance import HARDEST, ROLLS, KeepingDistance, slowed
 from roadgpt.drive.view import Command, View
@@ -23,10 +24,14 @@ SPEED_GAIN = 2.0  # 1/s, acceleration per speed error
 LEAST_AHEAD = 1.0  # m; nearer places say nothing about a crest
 TAKEN_OVER = 50.0  # m before a junction, from which the person at the wheel drives
 GIVEN_BACK = 10.0  # m behind a junction, from which the lane centring steers again
-FAST, SLOW, MORE = 20.0, 5.0, 1.5
-"""Above FAST m/s cruise control brakes with ``hardest``, below SLOW with MORE m/s^2 more: ISO 15622."""
-EMERGENCY = 5.0  # m/s^2: who would need more brakes as hard as it can; the least that UN R152 asks for
-AWAKE = 10 / 3.6  # m/s, from which on UN R152 asks for emergency braking
+FAST, SLOW, MORE, JERK = 20.0, 5.0, 1.5, 2.5
+"""Above FAST m/s cruise control brakes with ``hardest``, which takes JERK m/s^3 to build up; below SLOW with
+MORE m/s^2 more, in half of the time: ISO 15622."""
+EMERGENCY = 5.0  # m/s^2: where more is needed, emergency braking begins; the least that UN R152 asks for
+FULL, BUILD_UP = 0.85 * 9.81, 0.6  # m/s^2, s until it is reached: UN R157, Annex 4, Appendix 3, from R152
+AWAKE, AWAKE_FOR_OTHERS = 9.5 / 3.6, 19.5 / 3.6
+"""m/s, from which on there is emergency braking before vehicles, and before persons: 10 and 20 km/h in UN
+R152, less what a test's speed may be off."""
 SHORT = 1.0  # m before somebody, where emergency braking wants to stand
 STRAIGHT = 1e-6  # 1/m; a smaller curvature limits no speed
 TURN = 2 * math.pi
@@ -47,17 +52,20 @@ class LaneCentring:
 
     Lane centring is not made for the turns of junctions (comma.ai's openpilot lists intersections among its
     limitations, because its steering torque is limited). So from 50 m before a junction or roundabout until
-    10 m behind it, the person at the wheel drives, as the driver ``reference`` does. The person drives on if
-    the car is still too fast for the bends that the camera sees.
+    10 m behind it, the person at the wheel drives, as the driver ``reference`` does, or as ``robot`` if the
+    scene says so. The person drives on if the car is still too fast for the bends that the camera sees.
+    Emergency braking stays the car's: then the pedals are, too, and the person steers.
 
     Cruise control keeps 1.5 s to vehicles in the path up to 150 m ahead, and brakes with at most
     ``hardest``, below 20 m/s with up to 1.5 m/s^2 more. ISO 15622 asks for at least 0.8 s, and allows
-    3.5 m/s^2 above 20 m/s and 5 m/s^2 below 5 m/s. Where not touching somebody in the path takes more than
-    5 m/s^2, emergency braking brakes as hard as it can, from 10 km/h on. UN R152 asks for at least 5 m/s^2,
-    from 10 to 60 km/h, before vehicles and persons. Limits: persons, animals and things count only for
-    emergency braking, and from ``sight`` metres on; fast cars may touch what stands there, which R152 allows
-    above about 40 km/h. The warning that R152 asks for has no effect, because nobody is simulated who would
-    heed it. Below 10 km/h the person at the wheel brakes for everybody, and always for red lights.
+    3.5 m/s^2 and 2.5 m/s^3 above 20 m/s, 5 m/s^2 and 5 m/s^3 below 5 m/s. Where not touching somebody in the
+    path takes more than 5 m/s^2, emergency braking begins, and reaches 0.85 g after 0.6 s. UN R152 asks for
+    at least 5 m/s^2, before vehicles from 10, before persons from 20 to 60 km/h; here it also acts above.
+    Limits: persons, animals and things count only for emergency braking, and from ``sight`` metres on; fast
+    cars may touch what stands there, which R152 allows above about 40 km/h. The warning that R152 asks for
+    has no effect, because nobody is simulated who would heed it. Below these speeds the person at the wheel
+    brakes for everybody, and always for red lights. A robot does not, and sets the speed of the scene;
+    after an emergency braking ``reference`` is at the wheel.
 
     Args:
         strength: largest lateral acceleration that the steering gives, in m/s^2.
@@ -97,30 +105,38 @@ class LaneCentring:
     def start(self, road: "Road", world: "World", seed: int) -> None:
         """Computes the middle of the lane, and forgets the last road."""
         self._by_person = [(way.start - TAKEN_OVER, way.end + GIVEN_BACK) for way in road.passages]
-        self._person, self._is_person = Reference(), False
+        self._is_robot = world.scene.person == "robot"
+        self._next, self._is_person = Reference(), False
+        self._person = Robot() if self._is_robot else self._next
         self.handed_to: str | None = None
         if self._by_person:
-            self._person.start(road, world, seed)
+            for each in {self._person, self._next}:
+                each.start(road, world, seed)
         s = stations(road)
         middle = world.profile_of(road).middle(s)
         self._line = line_along(road, middle)
         heights = road.at(s, middle)[:, 2].tolist()
         self._heights = heights + heights[-1:] * (len(self._line.x) - len(heights))
-        self._speed_limit, self._lane_limits = world.limits.speed_limit, lane_limits(road, world, self._line)
+        self._most = world.limits.speed_limit
+        self._speed_limit = world.first_speed if self._is_robot else self._most
+        self._lane_limits = lane_limits(road, world, self._line)
         self._sight = min(self.sight, visual_range(world.scene, "lane"))
         self._steps, self._bend, self._lateral, self._speed = 0, 0.0, 0.0, self._speed_limit
         self._waiting: deque[float] = deque()
-        self._distance, self._is_emergency = KeepingDistance(self._line), False
+        self._distance, self._is_emergency, self._braking = KeepingDistance(self._line), False, 0.0
 
     def steer(self, view: View) -> Command:
         """Steers by the image of ``lag`` seconds ago, and drives as fast as the bends in sight allow.
 
-        Near junctions, the person at the wheel steers and drives instead."""
+        Near junctions, the person at the wheel steers, and drives but for emergency braking."""
         command = self._centred(view)
         is_near = any(first <= view.s <= last for first, last in self._by_person)
         self._is_person = is_near or (self._is_person and view.speed > self._speed)
         self.handed_to = self._person.name if self._is_person else None
-        return self._person.steer(view) if self._is_person else command
+        if not self._is_person:
+            return command
+        person = self._person.steer(view)
+        return command._replace(steer=person.steer) if self._is_emergency else person
 
     def _centred(self, view: View) -> Command:
         if self._steps % EVERY == 0:
@@ -139,26 +155,33 @@ class LaneCentring:
             math.atan(self.wheelbase * bend), *pedals_for(wanted, self._line.grade[here], view.speed)
         )
         if not (view.others or view.lights):
+            self._is_emergency = False
             return command
         return slowed(self._line, view, command, self._allowed(view))
 
     def _allowed(self, view: View) -> float:
-        """Returns the acceleration in m/s^2 that others in the path allow."""
-        v = view.speed
-        gap, along, follows, vehicles = self._distance.ahead(view).T
+        """Returns the acceleration in m/s^2 that others in the path and red lights allow."""
+        v, count = view.speed, len(view.others)
+        rows = self._distance.ahead(view)
+        gap, along, follows, vehicles = (rows[:count] if self._is_robot else rows).T
         is_vehicle = vehicles > 0
-        is_seen = is_vehicle | (gap < self._sight)
-        closing = np.where(is_seen, np.maximum(v - along, 0.0), 0.0)
-        needed = float((closing**2 / 2 / np.maximum(gap - SHORT, 0.1)).max(initial=0.0))
-        if v > AWAKE and needed > EMERGENCY:
+        closing = np.where(is_vehicle | (gap < self._sight), np.maximum(v - along, 0.0), 0.0)
+        closing[count:] = 0.0  # red lights
+        needed = closing**2 / 2 / np.maximum(gap - SHORT - closing * BUILD_UP / 2, 0.1)
+        is_awake = v > np.where(is_vehicle, AWAKE, AWAKE_FOR_OTHERS)
+        if (is_awake & (needed > EMERGENCY)).any():
             self._is_emergency = True
-        elif v < ROLLS or not closing[gap < self._sight].any():
-            self._is_emergency = False
-        if self._is_emergency:
-            return -HARDEST
-        least = float(follows[is_vehicle | (v < AWAKE)].min(initial=math.inf))
+        elif self._is_emergency and (v < ROLLS or not closing[gap < self._sight].any()):
+            self._is_emergency = self._is_robot = False
+            self._person, self._speed_limit = self._next, self._most
         share = min(max((FAST - v) / (FAST - SLOW), 0.0), 1.0)
-        return max(least, -self.hardest - MORE * share)
+        asked, jerk = -FULL, FULL / BUILD_UP
+        if not self._is_emergency:
+            least = math.inf if self._is_person else float(follows[is_vehicle].min(initial=math.inf))
+            asked, jerk = max(least, -self.hardest - MORE * share), JERK * (1 + share)
+        self._braking = max(asked, min(self._braking, 0.0) - jerk * view.dt)
+        by_hand = math.inf if self._is_robot else float(follows[~is_awake].min(initial=math.inf))
+        return min(self._braking, max(by_hand, -HARDEST))
 
     def _look(self, view: View) -> None:
         seen = self._speeds_in_sight(view)
