@@ -324,7 +324,8 @@ def _may_enter(crowd: Crowd, i: int, k: int, ahead: float, is_over: bool, count:
                 continue
             if _holds(crowd, j, other, last):
                 return False
-            if is_over or lanes.conflict[c, 1] == 0:
+            goes_first = j == TESTED and numbers[j, V] > STANDING  # also if neither gives way
+            if is_over or lanes.conflict[c, 1] < (0 if goes_first else 1):
                 continue
             if _comes_before(crowd, i, j, other, first, leaves):
                 return False
@@ -647,7 +648,7 @@ def _reserve(crowd: Crowd) -> None:
     line = ahead - row[LENGTH] / 2.0
     has_priority = True
     for c in range(lanes.conflict_of[ways[TESTED, k]], lanes.conflict_of[ways[TESTED, k] + 1]):
-        has_priority = has_priority and lanes.conflict[c, 1] == 0
+        has_priority = has_priority and lanes.conflict[c, 1] < 1
     top = lanes.limit[ways[TESTED, crowd.whole[TESTED, AT]]]
     soon = has_priority and row[V] > STANDING and time_over(row[V], max(line, 0.0), top, SPRINT) < SOON
     if before < 0 or line < 0.0 or line < row[V] ** 2 / (2.0 * AGAINST_MUST) or soon:

@@ -75,8 +75,8 @@ class LaneMap(NamedTuple):
     """Shape (exits, lanes): the metres from the start of each lane to the end of each exit, on the shortest
     way, and PER_CHANGE for each change of lane on it; infinite if there is none."""
     conflict: IntArray
-    """Shape (conflicts, 2): the other lane, and 1 if the own lane gives way to it; ``conflict_of`` has where
-    each lane begins."""
+    """Shape (conflicts, 2): the other lane, and 1 if the own lane gives way to it, -1 if the other does, 0 if
+    neither; ``conflict_of`` has where each lane begins."""
     conflict_at: FloatArray
     """Shape (conflicts, 4): between which stations of the own and of the other lane they meet."""
     conflict_of: IntArray
@@ -195,9 +195,9 @@ def _begins(lanes: Lanes, lane: Lane, number: dict[Leg, int]) -> bool:
 
 
 def _conflicts(lanes: Lanes, lane: Lane, number: dict[Leg, int]) -> list[tuple[float, ...]]:
-    """Returns for each lane that a lane of a junction meets there: its number, whether the lane gives way to
-    it, and where they meet. Ways that begin in the same lane are followed one after another, and are no
-    conflict."""
+    """Returns for each lane that a lane of a junction meets there: its number, which of both gives way, and
+    where they meet (see LaneMap). Ways that begin in the same lane are followed one after another, and are
+    no conflict."""
     if lane.member.junction is None:
         return []
     over = {*lanes.gives_way_to(lane.id)}
@@ -206,7 +206,8 @@ def _conflicts(lanes: Lanes, lane: Lane, number: dict[Leg, int]) -> list[tuple[f
         other, place = lanes[key], lanes.meeting(lane.id, key)
         is_there = other.member.junction == lane.member.junction and key in number
         if is_there and place is not None and not {*other.predecessors} & {*lane.predecessors}:
-            found.append((number[key], float(key in over), *place.own, *place.others))
+            rank = (key in over) - (lane.id in lanes.gives_way_to(key))
+            found.append((number[key], rank, *place.own, *place.others))
     return found
 
 
