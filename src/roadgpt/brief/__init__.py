@@ -25,13 +25,7 @@ from roadgpt.brief.model import Brief, Clause, exactly
 from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Outline, outline
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.brief.refusal import (
-    AnotherRoadError,
-    ContradictionError,
-    NoRoomError,
-    NotBuiltError,
-    TooMuchError,
-)
+from roadgpt.brief.refusal import AnotherRoadError, NoRoomError, TooMuchError
 from roadgpt.brief.sentence import sentence
 from roadgpt.brief.words import LARGEST_MAP, LEAST_RADIUS, STEEPEST, SURE, USUAL_MAP
 from roadgpt.chat import ChatSettings, plugin_of
@@ -42,9 +36,7 @@ __all__ = [
     "AnotherRoadError",
     "Brief",
     "Clause",
-    "ContradictionError",
     "NoRoomError",
-    "NotBuiltError",
     "Outline",
     "Reader",
     "alternatives",
@@ -60,7 +52,7 @@ __all__ = [
 
 PLAN = "plan"
 """The name of the plan reader. If a plan lists a roundabout or the like in ``beside(...)``, the road is built
-without it. If another reader lists a roundabout in ``Brief.beside``, ``read`` raises NotBuiltError."""
+without it. If another reader lists a roundabout in ``Brief.beside``, ``read`` raises AnotherRoadError."""
 
 
 class Reader(Protocol):
@@ -101,8 +93,8 @@ def read(
     Raises:
         NoRoomError: the map is too small for the road that is asked for; the message says what would fit on
             this map, and which size of map would hold the road.
-        NotBuiltError: the reader put a roundabout or the like into ``Brief.beside``, so that its place on the
-            route is not known; the message proposes a plan of the road without it.
+        AnotherRoadError: the description contradicts itself, or the place of a roundabout or the like on the
+            route is not known; the message proposes a plan.
         BriefError: the description does not ask for a road that can be built; the message says what to
             change.
         PartError: no reader of that name is installed.
@@ -128,7 +120,7 @@ def read(
         raise too_much
     if reader != PLAN and (missing := beside.networks_in(brief.beside)):
         rest = brief.model_copy(update={"beside": tuple(n for n in brief.beside if n not in beside.NETWORKS)})
-        raise NotBuiltError(f"{missing}; the road without it", plan(rest), rest)
+        raise AnotherRoadError(f"{missing}; the road without it", plan(rest), rest)
     is_road = not brief.junctions and brief.map is None
     if reader != PLAN:
         brief = with_driving_side(brief, words)
