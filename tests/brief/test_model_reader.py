@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roadgpt.brief import ContradictionError, check, normal, read, reader_of, sentence
+from roadgpt.brief import AnotherRoadError, check, normal, read, reader_of, sentence
 from roadgpt.brief.model import Brief, exactly
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model import WEIGHTS, ModelReader
@@ -52,7 +52,7 @@ def test_any_text_is_a_brief_or_refused(words: str) -> None:
 
 def test_a_contradiction_is_answered_with_the_plan_that_may_be_meant() -> None:
     with pytest.raises(
-        ContradictionError, match="the number of turns; leave one of them out; or is this meant"
+        AnotherRoadError, match="the number of turns; leave one of them out; or is this meant"
     ) as refusal:
         read("three turns but no turns")
     assert read_plan(refusal.value.plan).turns != exactly(0)
@@ -147,7 +147,7 @@ def test_denials_and_corrections_that_the_networks_have_learnt_leave_no_doubt(wo
 
 @pytest.mark.parametrize("words", rows(__file__, "real_contradictions_refused"))
 def test_real_contradictions_are_refused_with_what_may_be_meant(words: str) -> None:
-    with pytest.raises(ContradictionError, match=r"contradicts itself about .*; or is this meant: --plan"):
+    with pytest.raises(AnotherRoadError, match=r"contradicts itself about .*; or is this meant: --plan"):
         read(words)
 
 

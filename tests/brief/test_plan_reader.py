@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from roadgpt.brief import NotBuiltError, read, remarks
+from roadgpt.brief import AnotherRoadError, read, remarks
 from roadgpt.brief.beside import BESIDE, NOT_BUILT, SAID_OTHERWISE
 from roadgpt.brief.model import Amount, Brief, Clause, exactly
 from roadgpt.brief.plan import plan, read_plan
@@ -53,7 +53,7 @@ class OfARoundabout:
 
 def test_what_is_no_single_road_is_asked_about(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("roadgpt.brief.reader_of", lambda name, chat: OfARoundabout())
-    with pytest.raises(NotBuiltError) as refusal:
+    with pytest.raises(AnotherRoadError) as refusal:
         read("a turn, then a roundabout, in the rain", "model")
     assert str(refusal.value).startswith(
         "it is not clear where a roundabout should be; say it in driving order, such as 'a roundabout, "

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from roadgpt.brief import Brief, NotBuiltError, normal, read
+from roadgpt.brief import AnotherRoadError, Brief, normal, read
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model import WEIGHTS, ModelReader
 from roadgpt.brief.readers.model.before import may_tell_a_route
@@ -35,7 +35,7 @@ def test_a_reader_without_this_network_names_what_it_cannot_read(tmp_path: Path)
     for path in WEIGHTS.iterdir():
         if "_routes" not in path.name:
             shutil.copy(path, tmp_path)
-    with pytest.raises(NotBuiltError, match="a roundabout") as refusal:
+    with pytest.raises(AnotherRoadError, match="a roundabout") as refusal:
         read("two turns and a roundabout", f"model:{tmp_path}")
     assert normal(refusal.value.brief) == normal(read_plan("turn x2"))
 

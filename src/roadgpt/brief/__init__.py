@@ -9,7 +9,7 @@ method
 ``read`` raises BriefError, with one sentence that says what to change, if the description is empty, is not
 about a road, contradicts itself or asks for something impossible. Words that the reader did not understand
 are listed in ``Brief.unused``. All readers take the meanings of words from one table, in ``words.py``. A
-reader may also have a method ``alternatives(words, number, temperature, seed)``, which returns several
+reader may also have a method ``alternatives(words, number, temperature)``, which returns several
 different readings of a vague description, the likeliest first."""
 
 from collections.abc import Callable
@@ -25,13 +25,7 @@ from roadgpt.brief.model import Brief, Clause, exactly
 from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Outline, outline
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.brief.refusal import (
-    AnotherRoadError,
-    ContradictionError,
-    NoRoomError,
-    NotBuiltError,
-    TooMuchError,
-)
+from roadgpt.brief.refusal import AnotherRoadError, NoRoomError, TooMuchError
 from roadgpt.brief.sentence import sentence
 from roadgpt.brief.words import LARGEST_MAP, LEAST_RADIUS, STEEPEST, SURE, USUAL_MAP
 from roadgpt.chat import ChatSettings, plugin_of
@@ -42,9 +36,7 @@ __all__ = [
     "AnotherRoadError",
     "Brief",
     "Clause",
-    "ContradictionError",
     "NoRoomError",
-    "NotBuiltError",
     "Outline",
     "Reader",
     "alternatives",
@@ -60,7 +52,7 @@ __all__ = [
 
 PLAN = "plan"
 """The name of the plan reader. If a plan lists a roundabout or the like in ``beside(...)``, the road is built
-without it. If another reader lists a roundabout in ``Brief.beside``, ``read`` raises NotBuiltError."""
+without it. If another reader lists a roundabout in ``Brief.beside``, ``read`` raises AnotherRoadError."""
 
 
 class Reader(Protocol):
@@ -101,8 +93,8 @@ def read(
     Raises:
         NoRoomError: the map is too small for the road that is asked for; the message says what would fit on
             this map, and which size of map would hold the road.
-        NotBuiltError: the reader put a roundabout or the like into ``Brief.beside``, so that its place on the
-            route is not known; the message proposes a plan of the road without it.
+        AnotherRoadError: the description contradicts itself, or the place of a roundabout or the like on the
+            route is not known; the message proposes a plan.
         BriefError: the description does not ask for a road that can be built; the message says what to
             change.
         PartError: no reader of that name is installed.
@@ -128,7 +120,7 @@ def read(
         raise too_much
     if reader != PLAN and (missing := beside.networks_in(brief.beside)):
         rest = brief.model_copy(update={"beside": tuple(n for n in brief.beside if n not in beside.NETWORKS)})
-        raise NotBuiltError(f"{missing}; the road without it", plan(rest), rest)
+        raise AnotherRoadError(f"{missing}; the road without it", plan(rest), rest)
     is_road = not brief.junctions and brief.map is None
     if reader != PLAN:
         brief = with_driving_side(brief, words)
@@ -150,9 +142,6 @@ def alternatives(
     reader: str = "model",
     map_size: float | None = USUAL_MAP,
     temperature: float = 1.0,
-    seed: int = 0,
-    min_radius: float = LEAST_RADIUS,
-    max_grade: float = STEEPEST / 100,
 ) -> tuple[Brief, ...]:
     """Returns up to ``number`` different readings of a description, the likeliest first.
 
@@ -166,25 +155,22 @@ def alternatives(
         map_size: side of the square map in metres; None skips the check whether the road fits.
         temperature: how freely the readings after the first are sampled; 1 samples from the model's own
             distribution, lower values stay closer to the likeliest reading.
-        seed: seed of the sampling; the same seed gives the same readings.
-        min_radius: radius of the tightest turn allowed, in metres.
-        max_grade: steepest slope allowed, as a ratio (0.15 is 15 %).
 
     Raises:
         BriefError: ``read`` would raise this error for the likeliest reading.
         PartError: no reader of that name is installed."""
-    first = read(words, reader, map_size, min_radius, max_grade)
+    first = read(words, reader, map_size)
     more: Callable[..., tuple[Brief, ...]] | None = getattr(reader_of(reader), "alternatives", None)
     if more is None:
         return (first,)
     try:
         sized = said_map_size(first.words)
-        others = more(sized[1] if sized else first.words, number, temperature, seed)[1:]
+        others = more(sized[1] if sized else first.words, number, temperature)[1:]
     except TooMuchError:  # such a description has only one reading
         return (first,)
     same = {"words": first.words, "map_size": first.map_size} | ({"motorway": True} if first.motorway else {})
     others = tuple(brief.model_copy(update=same) for brief in others)
-    return (first, *(brief for brief in others if is_possible(brief, map_size, min_radius, max_grade)))
+    return (first, *(brief for brief in others if is_possible(brief, map_size)))
 
 
 def remarks(brief: Brief, map_size: float, friction: float | None = None) -> tuple[str, ...]:

@@ -19,7 +19,7 @@ them; and wishes that it understands but does not build from these words, with t
 ``Brief.beside``, names on routes come only from plans and from readers that do not know routes."""
 NETWORKS = (*ON_ROUTES, "loop")
 """Names of the things that are not a single road. If a reader other than ``plan`` puts one of them into
-``Brief.beside``, ``brief.read`` raises NotBuiltError, which proposes the road without this thing."""
+``Brief.beside``, ``brief.read`` raises AnotherRoadError, which proposes the road without this thing."""
 BESIDE = frozenset({*NOT_BUILT, *SAID_OTHERWISE, *SURFACES})
 
 

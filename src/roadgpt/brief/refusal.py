@@ -62,7 +62,9 @@ class TooMuchError(BriefError):
 
 
 class AnotherRoadError(BriefError):
-    """Raised if a description cannot be built as it is, but another road may be what is meant.
+    """Raised if a description cannot be built as it is, but another road may be what is meant: the likeliest
+    plan without a contradiction, or the road without what a reader put into ``Brief.beside`` although it
+    cannot stand there, such as a roundabout.
 
     Attributes:
         offer: why the description cannot be built, and what is offered instead; a colon and the plan, or a
@@ -73,15 +75,6 @@ class AnotherRoadError(BriefError):
     def __init__(self, offer: str, plan: str, brief: Brief) -> None:
         super().__init__(f'{offer}: --plan "{plan}"')
         self.offer, self.plan, self.brief = offer, plan, brief
-
-
-class NotBuiltError(AnotherRoadError):
-    """Raised if a reader puts something into ``Brief.beside`` that cannot stand beside a road, such as a
-    roundabout; offers the road without this thing."""
-
-
-class ContradictionError(AnotherRoadError):
-    """Raised if a description contradicts itself; offers the likeliest plan without a contradiction."""
 
 
 class NoRoomError(BriefError):

@@ -164,12 +164,12 @@ def watched(steps: Iterable[T], total: int, what: str, quiet: bool = False) -> I
             yield step
 
 
-def aligned(rows: Sequence[Sequence[str]], sides: str, gap: str = "  ") -> list[str]:
+def aligned(rows: Sequence[Sequence[str]], sides: str) -> list[str]:
     """Returns lines with columns as wide as their longest text; ``sides`` says for each column whether its
     texts are at the left (<) or at the right (>)."""
     wide = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return [
-        gap.join(f"{text:{side}{w}}" for text, side, w in zip(row, sides, wide, strict=True)).rstrip()
+        "  ".join(f"{text:{side}{w}}" for text, side, w in zip(row, sides, wide, strict=True)).rstrip()
         for row in rows
     ]
 

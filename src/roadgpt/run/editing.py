@@ -10,11 +10,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from roadgpt.errors import UsageError, explained
+from roadgpt.errors import UsageError
 from roadgpt.network import read_source
 from roadgpt.road import Design, Road, World
 from roadgpt.run.atomic import json_text, to_bytes
-from roadgpt.run.folder import EDIT_CARD, Draw, new_folder, write_run
+from roadgpt.run.folder import EDIT_CARD, Draw, write_run
 from roadgpt.run.model import Request, Run
 
 BEFORE = "before"
@@ -43,21 +43,10 @@ def original_of(path: str, run: Run | None, world: World) -> tuple[Run, Design, 
     return run, run.design, remarks
 
 
-def reject_used(out: Path) -> None:
+def reject_used(out: Path | None) -> None:
     """Raises UsageError if ``out`` is a folder that is not empty."""
-    if out.is_dir() and any(out.iterdir()):
+    if out is not None and out.is_dir() and any(out.iterdir()):
         raise UsageError(f"{out} is not empty; name another folder")
-
-
-def folder_for(words: str, seed: int, out: Path | None) -> Path:
-    """Returns an empty folder for the changed road: ``out``, or a new one named after the request and the
-    seed."""
-    if out is None:
-        return new_folder(words, seed)
-    with explained(UsageError, f"cannot use {out}", "name another folder"):
-        out.mkdir(parents=True, exist_ok=True)
-        reject_used(out)
-    return out
 
 
 @dataclass(frozen=True)

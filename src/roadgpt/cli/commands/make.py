@@ -48,7 +48,6 @@ RUN_OPTIONS = (
     *(*options.CHAT, *options.GATE, options.JUNIT, *options.SCREEN),
 )  # fmt: skip
 
-
 OF_RUN = Argument("words...", "DESCRIPTION", options.WORDS.advice, required=False)
 
 
@@ -343,11 +342,11 @@ def edit_road(
     from roadgpt.design.edit import edit
     from roadgpt.drive.loading import check_named_drivers, require_permission
     from roadgpt.run import prove
-    from roadgpt.run.editing import folder_for, original_of, reject_used, write_edit
+    from roadgpt.run.editing import original_of, reject_used, write_edit
     from roadgpt.run.execution import test_name
+    from roadgpt.run.folder import new_folder
 
-    if out is not None:
-        reject_used(out)
+    reject_used(out)
     (named,) = roads_named([road], None)
     before, design, remarks = original_of(road, named.run() if named.run else None, world)
     for remark in remarks:
@@ -365,22 +364,22 @@ def edit_road(
     meter = Meter.of(chat)
     try:
         with counting(meter, "edit"):
-            made = edit(design, request, before.world, setup.geometry, chat)
+            edited = edit(design, request, before.world, setup.geometry, chat)
     finally:  # a language model costs money even if the change failed
         screen.spent(meter.spent)
     setup = setup.model_copy(update={"designer": "planner", "reader": reader, "chat": chat, "drives": drives})
     old = prove(design, before.seed, before.world, setup.model_copy(update={"drives": False}))
     with redirect_stdout(sys.stderr):  # a user's driver may print
-        run = prove(made.design, before.seed, made.world, setup)
-    folder = folder_for(words, before.seed, out)
-    place = write_edit(run, old, words, made.changes, road, folder, options.drawing_of(pictures))
+        run = prove(edited.design, before.seed, edited.world, setup)
+    folder = made(out) if out is not None else new_folder(words, before.seed)
+    place = write_edit(run, old, words, edited.changes, road, folder, options.drawing_of(pictures))
     row = row_of(run, str(folder / test_name(1)), name=test_name(1))
     if screen.as_json:
-        told = {"request": words, "of": road, "changes": made.changes, "unused": made.unused}
-        sure = {"confidence": made.confidence, "is_sure": made.confidence >= SURE, "other": made.other}
+        told = {"request": words, "of": road, "changes": edited.changes, "unused": edited.unused}
+        sure = {"confidence": edited.confidence, "is_sure": edited.confidence >= SURE, "other": edited.other}
         print(json.dumps({**told, **sure, **json.loads(row.to_json())}, ensure_ascii=False))
     else:
-        _print_edit(screen, made, row, place, pictures)
+        _print_edit(screen, edited, row, place, pictures)
     return place
 
 
@@ -461,8 +460,7 @@ def drive(
     from roadgpt.run.editing import reject_used
     from roadgpt.run.model import MOST, given_up
 
-    if out is not None:
-        reject_used(out)
+    reject_used(out)
     world = options.world_of(rest)
     setup = Setup(**rest)
     with redirect_stdout(sys.stderr):

@@ -36,7 +36,7 @@ from roadgpt.brief.readers.model.trained import (
     scored_plans,
 )
 from roadgpt.brief.readers.model.vocabulary import plan_of
-from roadgpt.brief.refusal import MOST_CHARACTERS, ContradictionError, TooMuchError, refused
+from roadgpt.brief.refusal import MOST_CHARACTERS, AnotherRoadError, TooMuchError, refused
 from roadgpt.brief.words import SURE
 from roadgpt.errors import BriefError, PartError
 from roadgpt.reading import read_json, read_text
@@ -158,7 +158,7 @@ class ModelReader:
         leaves out no number of the words and the network is not certain of the contradiction.
 
         Raises:
-            ContradictionError: the description contradicts itself; the error has the Brief.
+            AnotherRoadError: the description contradicts itself; the error has the Brief.
             BriefError: the same, but no plan without a contradiction is likely."""
         found = trained.plans(text, NEVER)
         best = most_plausible(found) if found else None
@@ -166,7 +166,7 @@ class ModelReader:
             raise refused(why)
         brief = _with_confidence(best.asks, words, text, best, trained)
         if trained.network.refusal(text) >= CERTAIN or lost(best.tokens, text):
-            raise ContradictionError(f"{refused(why)}; or is this meant", plan(brief), brief)
+            raise AnotherRoadError(f"{refused(why)}; or is this meant", plan(brief), brief)
         return brief.model_copy(update={"confidence": min(brief.confidence, DOUBT)})
 
     def _for_the_usual_map(self, words: str, text: SlottedText, trained: Trained) -> Brief | None:
