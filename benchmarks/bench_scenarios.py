@@ -4,6 +4,7 @@ exported files by truths that were written before the scenarios were built.
     python benchmarks/bench_scenarios.py --referee FOLDER             all scenarios on their nominal roads
     python benchmarks/bench_scenarios.py --referee FOLDER --roads     on the roads of tests/traffic/roads.json
     python benchmarks/bench_scenarios.py --referee FOLDER --only 'r157:*' --seeds 20
+    python benchmarks/bench_scenarios.py --referee FOLDER --roads --sample 60 --seeds 20     60 of its pairs
     python benchmarks/bench_scenarios.py --referee FOLDER --left-hand      roads and truths mirrored
 
 A pair of a scenario and a road is found, where every key of the truth holds; refused, with its sentence; or
@@ -13,6 +14,7 @@ and whether they meet is asked: numbers belong to the nominal road."""
 import argparse
 import importlib
 import json
+import random
 import re
 import shlex
 import sys
@@ -73,6 +75,7 @@ def main() -> None:
     args.add_argument("--only", default="*")
     args.add_argument("--seeds", type=int, default=1)
     args.add_argument("--road", type=int, default=0, help="only this road, from 1")
+    args.add_argument("--sample", type=int, default=0, help="only so many pairs, drawn by chance")
     args.add_argument("--left-hand", action="store_true")
     args.add_argument("--verbose", action="store_true")
     given = args.parse_args()
@@ -83,19 +86,21 @@ def main() -> None:
         truths = re.sub(r"\b(?:left|right)\b", lambda side: MIRRORED[side[0]], truths)
     catalogue = json.loads(truths)["scenarios"]
     roads = json.loads((TRUTHS / "roads.json").read_text())["roads"] if given.roads else [None]
-    counts, unfit = Counter[str](), 0
-    for number, road in enumerate(roads, 1):
-        for entry in catalogue:
-            name = entry["name"]
-            fits = road is None or name not in road["fits"]["all but"]
-            if not fnmatchcase(name, given.only) or (given.road and number != given.road):
-                continue
-            unfit += not fits
-            for seed in range(1, given.seeds + 1) if fits else ():
-                outcome, said = _outcome(referee, entry, road, seed, given)
-                counts[outcome] += 1
-                print(f"{outcome:<8} {name:<42} {road['plan'] if road else ''}  {said}", flush=True)
-    print(f"{dict(counts)}, and {unfit} pairs that do not fit by the list of roads")
+    roads = roads[given.road - 1 : given.road] if given.road else roads
+    pairs = [(road, one) for road in roads for one in catalogue if fnmatchcase(one["name"], given.only)]
+    fit = [(road, one) for road, one in pairs if road is None or one["name"] not in road["fits"]["all but"]]
+    counts, sure = Counter[str](), 0
+    chosen = random.Random(1).sample(fit, given.sample) if given.sample else fit
+    for road, one in chosen:
+        own = Counter[str]()
+        for seed in range(1, given.seeds + 1):
+            outcome, said = _outcome(referee, one, road, seed, given)
+            own[outcome] += 1
+            print(f"{outcome:<8} {one['name']:<42} {road['plan'] if road else ''}  {said}", flush=True)
+        counts += own
+        sure += own["found"] >= 0.95 * given.seeds
+    print(f"{dict(counts)}; {sure} of {len(chosen)} pairs are found with 95 % of their seeds")
+    print(f"{len(pairs) - len(fit)} pairs do not fit by the list of roads")
 
 
 def _outcome(

@@ -181,6 +181,9 @@ def test_silent_words_get_lanes_a_way_and_wide_bends() -> None:
 
     assert asked("turn x3", "r157:cut_in").lanes.lo == 2
     assert asked("crossroads", "ncap:CCFtap").junctions[0].take == "left"
+    # also before a junction behind which there is road enough
+    way = asked("t_junction stop // straight 200", "r157:side_vehicle").stretches[0]
+    assert way.radius.lo >= (60 / 3.6) ** 2 / 6
     assert asked("crossroads straight", "leaderboard:red_light_runner").junctions[0].control == "lights"
     # 80 km/h at 6 m/s2 sideways
     assert asked("turn x3", "nhtsa:lead_vehicle_slower").clauses[0].radius.lo == pytest.approx(82.3, abs=1)

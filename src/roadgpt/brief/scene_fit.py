@@ -50,10 +50,10 @@ def fitted(brief: Brief, scene: Scene, limit: float) -> Brief:
     first, *others = brief.stretches
     junctions = list(brief.junctions)
     if at_junction and places:
-        before = ROLLS * speed + SPARE
+        before = until = ROLLS * speed + SPARE
         junctions[junctions.index(places[0])] = _with_way(places[0], scene)
     else:  # the car goes on straight where it can, and what is longer than the first road happens there
-        before += stop
+        until, before = before, before + stop
         is_open = not any(role.at for role in scene.actors)
         for n, (place, road) in enumerate(zip(brief.junctions, others, strict=True)):
             if is_open and place.take is None and place.kind in ("t_junction", "crossroads"):
@@ -62,7 +62,7 @@ def fitted(brief: Brief, scene: Scene, limit: float) -> Brief:
             if not (is_straight or place.kind in LANE_KINDS):
                 break
             before -= min(_length(road).hi + JUNCTION, before)
-    stretches = (_suited(first, scene, speed, before - stop, before), *others)
+    stretches = (_suited(first, scene, speed, until, before), *others)
     return brief.model_copy(update={"stretches": stretches, "junctions": tuple(junctions)})
 
 
