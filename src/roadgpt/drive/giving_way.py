@@ -147,8 +147,8 @@ class GivingWay:
 
 def _ways(lanes: Lanes, leg: Leg, key: Leg, start: float, end: float) -> Iterator[tuple[float, ...]]:
     """Yields points of the ways that lead into a lane to which a leg of a route gives way: x, y, heading,
-    metres from there to where the two ways meet and to the end of that place, and the station of the route
-    at its end. The leg leads from station ``start`` to ``end``."""
+    metres from there to where the two ways meet and to the end of that place, the station of the route at
+    its end, and metres to the junction. The leg leads from station ``start`` to ``end``."""
     place = lanes.meeting(leg, key)
     assert place is not None
     last = start + place.own[1] / lanes[leg].length * (end - start)
@@ -159,7 +159,7 @@ def _ways(lanes: Lanes, leg: Leg, key: Leg, start: float, end: float) -> Iterato
         lane = lanes[here]
         s = np.arange(lane.length, 0.0, -SPACING)
         for (x, y, _), heading, left in zip(lane.at(s), lane.heading(s), ahead - s, strict=True):
-            yield x, y, heading, left, left + until - first, last
+            yield x, y, heading, left, left + until - first, last, left - first
         if ahead < HORIZON:
             round_ = lanes[key].member.junction  # one comes around a ring to where one began
             before = [each for each in lane.predecessors if lanes[each].member.junction != round_]
@@ -184,7 +184,7 @@ def _is_awaited(ways: FloatArray, others: FloatArray, car: FloatArray) -> bool:
             if math.cos(other[2] - way[2]) < SAME or way[4] - ahead + half < 0.0:
                 continue
             if left > 0.0:
-                is_far = left > speed * speed / (2.0 * EASY) + speed + 15.0
+                is_far = left - way[3] + way[6] > speed * speed / (2.0 * EASY) + speed + 15.0
                 if (speed < STANDING and waited > TURN) or (waited > PATIENCE and is_far):
                     continue
                 through = max(way[5] - front + LENGTH, 0.0)
