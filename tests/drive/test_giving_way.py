@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from drive.test_keeping_distance import Watched
-from roadgpt.drive import Drive, View, simulate
+from roadgpt.drive import Command, Drive, View, simulate
+from roadgpt.drive.drivers.reference import Reference
 from roadgpt.network import Route, is_route
 from roadgpt.network.lanes import lanes_of
 from roadgpt.network.network import Leg
@@ -96,6 +97,28 @@ def test_the_car_waits_for_those_with_priority_and_goes_on(driver: str, turn: st
     # the last one has left the place where the ways meet, in the middle of the junction
     assert entered(drive, route) > 22.0 - 1.0
     assert entered(drive, route) < 22.0 + 8.0
+
+
+class Winks(Reference):
+    """Sees only the nearest one in two of every three seconds."""
+
+    time = 0.0
+
+    def steer(self, view: View) -> Command:
+        self.time += view.dt
+        return super().steer(view if self.time % 3.0 < 1.0 else view._replace(others=view.others[:1]))
+
+
+def test_who_is_hidden_for_a_moment_is_not_forgotten() -> None:
+    route, world = planned(CROSS.format("yield"))
+    legs = through(route, world, "left")
+    x, y, _ = route.at(110.0, 12.0)
+    stands, comes = straight(x, y, 0, 0), motion(route, world, legs, lambda time: 3.0 * time - 36.0)
+    for row in ({}, {"car_1": ("car", comes)}):
+        drive = simulate(route, world, Winks(), replay=tracks(route, 40.0, car_0=("car", stands), **row))
+        assert drive.ended == "goal"
+        assert (entered(drive, route) > 18.0) is bool(row)
+    assert judge(route, drive, world).kept
 
 
 @pytest.mark.parametrize("driver", ["reference", "lane_centring"])

@@ -40,3 +40,34 @@ def test_the_command_says_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
         result = CliRunner().invoke(app, ["export", "tight.json", "--to", "lanelet2,csv", *words])
         assert result.exit_code == 0
         assert ("tight.json: lanelet2: at s = 3" in result.stderr) == is_said
+
+
+OTHERS = "others on the road"
+SCENE = "truck ahead gap=30 v=50: brake decel=6; fog 60"
+
+
+@pytest.fixture(scope="module")
+def among_others(tmp_path_factory: pytest.TempPathFactory) -> str:
+    out = str(tmp_path_factory.mktemp("among"))
+    words = ["run", "--plan", "--no-plot", "--out", out, f"straight 60; turn right 40 r60 && {SCENE}"]
+    assert CliRunner().invoke(app, words).exit_code == 0
+    return f"{out}/1"
+
+
+@pytest.mark.parametrize(
+    ("command", "told"),
+    [
+        *((f"export --to {name}", f"{name}: {OTHERS} left out") for name in ("csv", "gltf", "geojson")),
+        ("export --to openscenario", None),
+        ("drive --out again", f"the scene of the run is left out; give it with --scene '{SCENE}'"),
+        ("drive --out again --scene none", None),
+    ],
+)
+def test_who_is_left_out_is_told(
+    command: str, told: str | None, among_others: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    result = CliRunner().invoke(app, [*command.split(), among_others])
+    assert result.exit_code == 0, result.output
+    said = result.stderr.replace("\n", " ")
+    assert "left out" not in said if told is None else told in said

@@ -47,6 +47,7 @@ ASIDE, SAME = 1.5, 0.7  # m from a way, cosine of the angle to it, within which 
 SOON, NEAR = 1.0, 0.7  # s, m: a person so far from the lanes or from the crosswalk counts
 STRIP = 1.2  # m: a person so far to the side of the car's middle who walks on does not count
 STROLLS = 0.1  # m/s
+HIDDEN = 3.0  # s, for which a driver remembers who is hidden behind somebody
 BEFORE = 4.0  # s before the road on which its route changes lanes, the driver begins to look into the other
 
 
@@ -85,14 +86,14 @@ class GivingWay:
             edges, own = profile.edges(s), line.offset[line.place(s)[0]]
             place = (*road.at(s)[:2], road.heading(s), edges.left, edges.right, own)
             self._crosswalks.append((begin, np.array(place, float)))
-        self._waited, self._goes = 0.0, False
+        self._waited, self._goes, self._seen = 0.0, False, np.empty((0, 6))
 
     def lines(self, view: View) -> list[float]:
         """Returns the distances in metres, along the route, to the lines before which the car has to wait."""
         front, far = view.s + FRONT, view.speed**2 / (2 * EASY) + view.speed + 5.0
         while self._junctions and self._junctions[0][0] <= front:
             del self._junctions[0]
-            self._waited, self._goes = 0.0, False
+            self._waited, self._goes, self._seen = 0.0, False, np.empty((0, 6))
         while self._crosswalks and self._crosswalks[0][0] <= front:
             del self._crosswalks[0]
         must = view.speed**2 / (2 * AGAINST_MUST) + front  # the station before which the car cannot stop
@@ -100,17 +101,29 @@ class GivingWay:
         if self._junctions and must < (line := self._junctions[0][0]) < front + far:
             self._waited += view.dt if view.speed < STANDING and line < front + 5.0 else 0.0
             _, top, ways = self._junctions[0]
-            rows = [each[1:6] for each in view.others if each.kind in VEHICLES]
+            rows = self._vehicles(view)
             margin = 0.0 if self._goes else MARGIN
             limit = view.world.limits.speed_limit
             car = np.array([front, line - front, view.speed, top, self._waited, margin, limit])
-            self._goes = not rows or not _is_awaited(ways, np.array(rows), car)
+            self._goes = not _is_awaited(ways, rows, car)
             found += [] if self._goes else [line - view.s]
         if self._crosswalks and must < (line := self._crosswalks[0][0]) < front + far:
             persons = [each for each in view.others if each.kind in ("adult", "child")]
             if any(_is_crossing(self._crosswalks[0][1], each) for each in persons):
                 found.append(line - view.s)
         return found
+
+    def _vehicles(self, view: View) -> FloatArray:
+        """Returns x, y, heading, speed and length of the vehicles that are seen, and of who is hidden for at
+        most HIDDEN seconds, which come last: where it is if it went on evenly."""
+        kept, rows = self._seen, [(*each[1:6], 0.0) for each in view.others if each.kind in VEHICLES]
+        seen = np.array(rows).reshape(-1, 6)
+        kept[:, 0] += view.dt * kept[:, 3] * np.cos(kept[:, 2])
+        kept[:, 1] += view.dt * kept[:, 3] * np.sin(kept[:, 2])
+        kept[:, 5] += view.dt
+        away = np.hypot(*(kept[:, None, :2] - seen[:, :2]).T).min(axis=0, initial=math.inf)
+        self._seen = np.concatenate([seen, kept[(away > ASIDE) & (kept[:, 5] < HIDDEN)]])
+        return self._seen
 
     def behind(self, view: View) -> float:
         """Returns the acceleration in m/s^2 with which the car comes behind those in the lane that its route
@@ -134,8 +147,8 @@ class GivingWay:
 
 def _ways(lanes: Lanes, leg: Leg, key: Leg, start: float, end: float) -> Iterator[tuple[float, ...]]:
     """Yields points of the ways that lead into a lane to which a leg of a route gives way: x, y, heading,
-    metres from there to where the two ways meet and to the end of that place, and the station of the route
-    at its end. The leg leads from station ``start`` to ``end``."""
+    metres from there to where the two ways meet and to the end of that place, the station of the route at
+    its end, and metres to the junction. The leg leads from station ``start`` to ``end``."""
     place = lanes.meeting(leg, key)
     assert place is not None
     last = start + place.own[1] / lanes[leg].length * (end - start)
@@ -146,7 +159,7 @@ def _ways(lanes: Lanes, leg: Leg, key: Leg, start: float, end: float) -> Iterato
         lane = lanes[here]
         s = np.arange(lane.length, 0.0, -SPACING)
         for (x, y, _), heading, left in zip(lane.at(s), lane.heading(s), ahead - s, strict=True):
-            yield x, y, heading, left, left + until - first, last
+            yield x, y, heading, left, left + until - first, last, left - first
         if ahead < HORIZON:
             round_ = lanes[key].member.junction  # one comes around a ring to where one began
             before = [each for each in lane.predecessors if lanes[each].member.junction != round_]
@@ -171,7 +184,7 @@ def _is_awaited(ways: FloatArray, others: FloatArray, car: FloatArray) -> bool:
             if math.cos(other[2] - way[2]) < SAME or way[4] - ahead + half < 0.0:
                 continue
             if left > 0.0:
-                is_far = left > speed * speed / (2.0 * EASY) + speed + 15.0
+                is_far = left - way[3] + way[6] > speed * speed / (2.0 * EASY) + speed + 15.0
                 if (speed < STANDING and waited > TURN) or (waited > PATIENCE and is_far):
                     continue
                 through = max(way[5] - front + LENGTH, 0.0)

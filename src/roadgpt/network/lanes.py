@@ -47,7 +47,7 @@ class LanePlace(NamedTuple):
     t: float  # m to the left of the middle
 
 
-class Meeting(NamedTuple):
+class Overlap(NamedTuple):
     """Where the areas of two lanes meet: on each, the stations in metres of the first and last common
     point."""
 
@@ -172,7 +172,7 @@ class Lanes:
     """All lanes of a network, by their ids."""
 
     network: Network
-    _meetings: dict[tuple[Leg, Leg], Meeting | None] = field(default_factory=dict, repr=False)
+    _meetings: dict[tuple[Leg, Leg], Overlap | None] = field(default_factory=dict, repr=False)
 
     @cached_property
     def by_id(self) -> Mapping[Leg, Lane]:
@@ -249,16 +249,16 @@ class Lanes:
             open_ways += [((*way, each), driven + self.by_id[each].length) for each in reversed(onward)]
         return found
 
-    def meeting(self, one: Leg, other: Leg) -> Meeting | None:
+    def meeting(self, one: Leg, other: Leg) -> Overlap | None:
         """Returns where the areas of two lanes meet; None if they do not, or only along a common edge or end,
         or where one passes over the other."""
         if (one, other) not in self._meetings:
             found = self._met(self.by_id[one], self.by_id[other])
             self._meetings[one, other] = found
-            self._meetings[other, one] = None if found is None else Meeting(found.others, found.own)
+            self._meetings[other, one] = None if found is None else Overlap(found.others, found.own)
         return self._meetings[one, other]
 
-    def _met(self, one: Lane, other: Lane) -> Meeting | None:
+    def _met(self, one: Lane, other: Lane) -> Overlap | None:
         import shapely
 
         common = shapely.intersection(one.area, other.area)
@@ -270,7 +270,7 @@ class Lanes:
         apart = np.abs(one.at(s)[:, 2] - other.at(s_other)[:, 2])
         if apart.min() > HEADROOM:
             return None
-        return Meeting((float(s.min()), float(s.max())), (float(s_other.min()), float(s_other.max())))
+        return Overlap((float(s.min()), float(s.max())), (float(s_other.min()), float(s_other.max())))
 
     def met_by(self, key: Leg) -> tuple[Leg, ...]:
         """Returns the driving lanes whose areas meet that of a lane, in the order of ``by_id``."""

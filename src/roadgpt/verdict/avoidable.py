@@ -58,7 +58,7 @@ def avoidance_of(
 ) -> tuple[bool, tuple[str, ...], str]:
     """Returns whether the tested car's first collision could have been avoided, which of the four drivers
     avoid it, and how in words."""
-    meeting = _Meeting(road, drive, world, collision)
+    meeting = _Encounter(road, drive, world, collision)
     courses = {driver: _course(driver, meeting) for driver in DRIVERS}
     by = tuple(driver.said for driver, (hits, _) in courses.items() if not hits)
     if CAREFUL.said in by:
@@ -101,7 +101,7 @@ def _braked_for_nothing(road: "Road", drive: "Drive", world: "World", collision:
     return "" if is_called else f"had braked with {most:.1f} m/s2 and nothing in its way called for it"
 
 
-def _course(driver: Driver, meeting: "_Meeting") -> tuple[bool, str]:
+def _course(driver: Driver, meeting: "_Encounter") -> tuple[bool, str]:
     """Returns whether a driver collides, and how close it comes to the other in words."""
     places, speeds = drive_on(driver, meeting.seen, meeting.free, FINE, meeting.first)
     ahead = meeting.along - places
@@ -112,7 +112,7 @@ def _course(driver: Driver, meeting: "_Meeting") -> tuple[bool, str]:
     return bool((apart < CORNER).any()), said
 
 
-class _Meeting:
+class _Encounter:
     """The other as the four drivers see it from the tested car's way, from when it is visible on, every FINE
     seconds."""
 
