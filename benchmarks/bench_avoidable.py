@@ -1,7 +1,9 @@
-"""Compares the four reference drivers with the program of the European Commission's Joint Research Centre.
+"""Compares the four reference drivers with the program of the European Commission's Joint Research Centre, or
+lists the avoidable collisions of a driver in scenarios of the catalogue.
 
     git clone https://github.com/ec-jrc/JRC-FSM
     python benchmarks/bench_avoidable.py JRC-FSM
+    python benchmarks/bench_avoidable.py --driver lane_centring --scenarios '*' --points 6
 
 The cells are those of UN R157's cut-in grid: the tested car drives 20 to 60 km/h by 10, the other 10 to 50
 km/h less, 0 to 60 m ahead by 10, and comes sideways with 0.5 to 3.0 m/s by 0.5; cells in which the other
@@ -15,9 +17,14 @@ import argparse
 import itertools
 import sys
 import warnings
+from collections import Counter
 from pathlib import Path
+from random import Random
 from typing import Any
 
+from roadgpt.brief.scenarios import LANE_WIDTH, chosen
+from roadgpt.road import World
+from roadgpt.run import Setup, perform
 from roadgpt.verdict.careful import DRIVERS, Driver, Moment, drive_on
 
 STEP, LENGTH, WIDTH, BESIDE = 0.1, 4.3, 1.9, 3.5  # s, m; the other begins in the middle of the next lane
@@ -72,10 +79,37 @@ def ours(driver: Driver, own: float, other: Any, as_text: bool = False) -> bool:
     )
 
 
+def list_avoidable(driver: str, scenarios: str, count: int) -> None:
+    """Prints a row for each avoidable collision that is the driver's, and the counts. Each scenario is driven
+    with its values as they are named, and at ``count`` points of its standard grid, on its nominal road."""
+    counts, drawn = Counter[str](), Random(1)
+    print("| scenario | who would have avoided it | verdict |\n|---|---|---|")
+    for one in chosen(scenarios):
+        points = [each for each in one.points("standard", with_road=True) if not each.fault] if count else []
+        for each in {str(point): point for point in [one, *drawn.sample(points, min(count, len(points)))]}:
+            setup = Setup(driver=driver, reader="plan", scenario=each)
+            run = perform(chosen(each)[0].plan, 1, World().changed(lane_width=LANE_WIDTH), setup)
+            by = (run.verdict and run.verdict.avoided_by) or ()
+            is_own = run.outcome == "FAIL" and bool(by) and run.verdict and not run.verdict.handed_to
+            counts["avoidable" if is_own else run.outcome] += 1
+            if is_own:
+                print(f"| `{each}` | {', '.join(by)} | {run.description} |", flush=True)
+    print(dict(counts))
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("checkout", type=Path, help="folder of ec-jrc/JRC-FSM")
-    sys.path.insert(0, str(parser.parse_args().checkout))
+    parser.add_argument("checkout", type=Path, nargs="?", help="folder of ec-jrc/JRC-FSM")
+    parser.add_argument("--driver", help="list the avoidable collisions of this driver instead")
+    parser.add_argument("--scenarios", default="*", help="of the catalogue, as for roadgpt campaign")
+    parser.add_argument("--points", type=int, default=0, help="of each scenario's standard grid, drawn")
+    given = parser.parse_args()
+    if given.driver:
+        list_avoidable(given.driver, given.scenarios, given.points)
+        return
+    if given.checkout is None:
+        parser.error("give the folder of ec-jrc/JRC-FSM, or a --driver")
+    sys.path.insert(0, str(given.checkout))
     warnings.simplefilter("ignore")  # of its divisions by zero
     from utility import models, movement
 

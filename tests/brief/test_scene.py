@@ -141,6 +141,7 @@ def casts(draw: st.DrawFn) -> tuple[Role, ...]:
 SCENES = drawn(
     Scene,
     speed=maybe(amounts(0, 250)),
+    person=st.none() | st.just("robot"),
     actors=casts(),
     flow=st.none() | st.sampled_from(get_args(Flow)),
     oncoming=st.none() | st.sampled_from([*get_args(Flow), "none"]),

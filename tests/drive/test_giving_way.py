@@ -140,6 +140,19 @@ def test_nobody_waits_for_who_gives_way_or_stands(driver: str) -> None:
         assert (entered(among, route) - alone > 0.5) is (control == "yield")
 
 
+def test_emergency_braking_is_not_for_who_is_ahead_of_a_turning_car_and_beside_its_way() -> None:
+    route, world = planned("straight 120 // crossroads right priority // straight 80")
+    world = world.changed(scene="ego robot v=20")
+    legs = through(route, world, "right")
+    row = {
+        f"car_{n}": ("car", motion(route, world, legs, lambda time, n=n: 10 * (time - 1.2 * n)))
+        for n in range(1, 25)
+    }
+    drive = simulate(route, world, "lane_centring", replay=tracks(route, 40.0, **row))
+    assert drive.ended == "goal"
+    assert drive["speed"].min() > 19.5 / 3.6
+
+
 @pytest.mark.parametrize("driver", ["reference", "lane_centring"])
 def test_the_car_lets_persons_cross_at_a_crosswalk_and_ignores_who_stands_or_walks_by(driver: str) -> None:
     route, world = planned("straight 120 // crossroads straight priority crosswalk // straight 80")

@@ -17,6 +17,7 @@ from roadgpt.run import Run, Setup, perform
 from roadgpt.traffic import SIZES, Tracks
 from roadgpt.traffic.actor import corners
 from roadgpt.traffic.lights import Lights
+from roadgpt.verdict import judge
 from staged import straight, tracks
 
 V = 20.0
@@ -98,6 +99,22 @@ def test_cruise_control_brakes_within_its_standard_and_an_emergency_harder() -> 
         late = straight(200, LANE - 1.7 - speed * (200 - ahead - FRONT) / V, np.pi / 2, speed)
         drive = simulate(ROAD, WORLD, "lane_centring", replay=tracks(60, adult=("adult", late)))
         assert -drive["ax"].min() > 5.0
+
+
+@pytest.mark.parametrize(
+    ("kind", "kmh", "most"), [("adult", 20, 0), ("adult", 40, 0), ("bicycle", 40, 0), ("adult", 60, 35)]
+)
+def test_emergency_braking_meets_its_standard(kind: str, kmh: float, most: float) -> None:
+    """UN R152, 02 series, cars in running order: who crosses at 5 or 15 km/h and would be hit in the middle
+    of the front is hit with these km/h at most. Nobody at the wheel reacts."""
+    world = World(limits=Limits(speed_limit=V)).changed(scene=f"ego robot v={kmh}")
+    speed = (15 if kind == "bicycle" else 5) / 3.6
+    crossing = straight(200, LANE - speed * (200 - FRONT) / (kmh / 3.6), np.pi / 2, speed)
+    drive = simulate(ROAD, world, "lane_centring", replay=tracks(60.0, other=(kind, crossing)))
+    assert -drive["ax"].min() > 5.0
+    hit = judge(ROAD, drive, world).first_contact
+    assert (3.6 * hit.speed if hit else 0.0) <= most
+    assert hit or drive.ended == "goal"
 
 
 class Watched:

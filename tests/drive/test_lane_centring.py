@@ -10,7 +10,8 @@ from road_parts import road_of
 from roadgpt.drive import Drive
 from roadgpt.drive.drivers.lane_centring import LaneCentring
 from roadgpt.road import Limits, Road, World
-from roadgpt.verdict import judge
+from roadgpt.run import Setup, perform
+from roadgpt.verdict import Verdict, judge
 
 MIDDLE = -2.0  # m, the middle of the right lane of a usual road
 
@@ -72,3 +73,38 @@ def test_it_leaves_its_lane_on_the_outside(hand: int, side: str) -> None:
     drive = driven(road, LaneCentring(strength=1.0))
     verdict = judge(road, drive, World())
     assert (verdict.outcome, verdict.side) == ("FAIL", side)
+
+
+def crossing(kmh: float) -> tuple[Drive, Verdict]:
+    plan = f"straight 150 // crossroads straight none // straight 60 && ego robot v={kmh}; "
+    plan += "car junction left v=30 impact=50: cross"
+    run = perform(plan, 1, World(), Setup(driver="lane_centring", reader="plan"))
+    assert run.drive is not None
+    assert run.verdict is not None
+    return run.drive, run.verdict
+
+
+def test_emergency_braking_stays_the_cars_where_somebody_else_steers() -> None:
+    drive, verdict = crossing(40)
+    assert (drive.ended, verdict.counts.get("collision")) == ("goal", None)
+    by = np.array([drive.handed_to(step) for step in range(len(drive))])
+    brakes = np.array(drive["brake"]) > 0.5
+    before = (by == "robot") & (np.cumsum(drive["brake"] > 0.05) == 0)
+    assert np.ptp(drive["speed"][before]) < 0.5 / 3.6  # Euro NCAP's tolerance of a speed that is held
+    assert brakes[by == "robot"].any()
+    assert drive["ax"].min() < -5.0
+    assert np.ptp(drive["t"]) < 0.1  # the robot steers on
+
+
+@pytest.mark.parametrize(("kmh", "whose"), [(40, None), (70, "robot")])
+def test_an_avoidable_collision_is_the_cars_at_the_speeds_of_the_regulation(
+    kmh: float, whose: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """UN R152 has 10 to 60 km/h: there a car without emergency braking has failed, whoever steers."""
+    monkeypatch.setattr("roadgpt.drive.drivers.lane_centring.EMERGENCY", math.inf)
+    drive, verdict = crossing(kmh)
+    hit = next(each.at_time for each in verdict.incidents or () if each.contact)
+    assert np.ptp(drive["speed"][drive["time"] < hit]) < 0.5 / 3.6
+    assert (verdict.outcome, verdict.cause, verdict.handed_to) == ("FAIL", "collision", whose)
+    said = "so the failure is not lane_centring's" if whose else "emergency braking stays lane_centring's"
+    assert said in verdict.description

@@ -404,7 +404,7 @@ def _parts(scene: Scene) -> Iterator[str]:
     if scene.turn:
         yield f"it goes {scene.turn} at the junction"
     if scene.person:
-        yield f"a {scene.person} is at its wheel in place of a person"
+        yield f"where its driver hands over, a {scene.person} holds path and speed"
     yield from map(str, scene.actors)
     for flow, name in ((scene.flow, "traffic"), (scene.oncoming, "oncoming traffic")):
         if flow:

@@ -32,6 +32,7 @@ FULL, BUILD_UP = 0.85 * 9.81, 0.6  # m/s^2, s until it is reached: UN R157, Anne
 AWAKE, AWAKE_FOR_OTHERS = 9.5 / 3.6, 19.5 / 3.6
 """m/s, from which on there is emergency braking before vehicles, and before persons: 10 and 20 km/h in UN
 R152, less what a test's speed may be off."""
+HELD = 6.0  # m/s^2 sideways, up to which a robot can hold path and speed at junctions, as scenes assume
 SHORT = 1.0  # m before somebody, where emergency braking wants to stand
 STRAIGHT = 1e-6  # 1/m; a smaller curvature limits no speed
 TURN = 2 * math.pi
@@ -53,7 +54,8 @@ class LaneCentring:
     Lane centring is not made for the turns of junctions (comma.ai's openpilot lists intersections among its
     limitations, because its steering torque is limited). So from 50 m before a junction or roundabout until
     10 m behind it, the person at the wheel drives, as the driver ``reference`` does, or as ``robot`` if the
-    scene says so. The person drives on if the car is still too fast for the bends that the camera sees.
+    scene says so and it can hold its speed there. The person drives on if the car is still too fast for the
+    bends that the camera sees.
     Emergency braking stays the car's: then the pedals are, too, and the person steers.
 
     Cruise control keeps 1.5 s to vehicles in the path up to 150 m ahead, and brakes with at most
@@ -105,7 +107,11 @@ class LaneCentring:
     def start(self, road: "Road", world: "World", seed: int) -> None:
         """Computes the middle of the lane, and forgets the last road."""
         self._by_person = [(way.start - TAKEN_OVER, way.end + GIVEN_BACK) for way in road.passages]
-        self._is_robot = world.scene.person == "robot"
+        square = world.first_speed**2
+        self._is_robot = world.scene.person == "robot" and all(
+            square * np.abs(road.curvature(np.arange(way.start, way.end))).max() < HELD
+            for way in road.passages
+        )
         self._next, self._is_person = Reference(), False
         self._person = Robot() if self._is_robot else self._next
         self.handed_to: str | None = None
