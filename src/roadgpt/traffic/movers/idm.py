@@ -245,7 +245,7 @@ class IdmMover:
         """Takes out who has left, and plans on for who needs it."""
         whole, ways, rows = self._whole, self._ways, self._rows
         at, last = whole[rows, f.AT], whole[rows, f.LAST]
-        has_left = whole[rows, f.STATE] == f.GONE
+        has_left = whole[rows, f.STATE] == f.ABSENT
         for n in np.flatnonzero((last - at < KEPT) & self._goes_on[ways[rows, last - 1]] & ~has_left):
             row, end = rows[n], last[n]
             rng = np.random.default_rng([self._seed, int(self._who[n]) + 1, self._tick])
@@ -258,7 +258,6 @@ class IdmMover:
             whole[row, [f.AT, f.GRANTED]] -= begin
             whole[row, f.LAST] = len(way)
         if has_left.any():
-            whole[rows[has_left], f.STATE] = f.ABSENT
             self._free += rows[has_left].tolist()
             self._rows, self._who = rows[~has_left], self._who[~has_left]
             self._present = int(self._rows.max(initial=0)) + 1
