@@ -203,22 +203,16 @@ def _next_way(crowd: Crowd, i: int) -> tuple[int, float, int]:
 
 @compiled
 def _holds(crowd: Crowd, j: int, lane: int, until: float) -> bool:
-    """Returns whether a vehicle has a grant for a lane, and its rear has not yet passed station ``until`` of
-    it."""
+    """Returns whether a vehicle has, or had, a grant for a lane, and its rear has not yet passed station
+    ``until`` of it."""
     lanes, numbers, whole, ways = crowd.lanes, crowd.numbers, crowd.whole, crowd.ways
-    k = whole[j, AT]
-    ahead = -numbers[j, S]
-    for q in range(k, whole[j, GRANTED] + 1):
+    begin, ahead = max(whole[j, AT] - 3, 0), -numbers[j, S]
+    for q in range(begin, whole[j, AT]):
+        ahead -= lanes.length[ways[j, q]]
+    for q in range(begin, max(whole[j, GRANTED] + 1, whole[j, AT])):
         if ways[j, q] == lane and -ahead - numbers[j, LENGTH] / 2.0 < until:
             return True
         ahead += lanes.length[ways[j, q]]
-    behind = -numbers[j, S]
-    for q in range(k - 1, max(k - 4, -1), -1):
-        behind -= lanes.length[ways[j, q]]
-        if -behind - numbers[j, LENGTH] / 2.0 > lanes.length[ways[j, q]]:
-            break
-        if ways[j, q] == lane and lanes.junction[lane] >= 0 and -behind - numbers[j, LENGTH] / 2.0 < until:
-            return True
     return False
 
 
@@ -344,12 +338,7 @@ def _is_first(crowd: Crowd, i: int, k: int, count: int) -> bool:
             if ahead + numbers[j, S] > 0.0 and whole[j, GRANTED] <= whole[j, AT]:
                 return False
         for n in range(count):
-            if (
-                entries[n, 0] == lane
-                and entries[n, 4] < 0.0
-                and ahead + entries[n, 1] > 0.0
-                and entries[n, 3] != ASKS
-            ):
+            if entries[n, 0] == lane and entries[n, 4] < 0.0 and ahead + entries[n, 1] > 0.0:
                 return False
         ahead += crowd.lanes.length[lane]
     return True
