@@ -35,7 +35,7 @@ AT, LAST, GRANTED, OLD, STATE, HAS_STOPPED, GOAL = range(7)
 """Columns of whole numbers: which lane of its way it is in, the number of lanes of its way, up to which of
 them it has a grant, the lane that it is leaving (-1: none), its state, whether it has stood at the stop
 sign ahead, and the exit of the map to which it drives."""
-ABSENT, DRIVES, STANDS_HIT, GONE = range(4)
+ABSENT, DRIVES, STANDS_HIT = range(3)
 TESTED = 0
 """The row of the tested car, which is not moved."""
 JAM = 2.0  # m, IDM's s0
@@ -203,22 +203,16 @@ def _next_way(crowd: Crowd, i: int) -> tuple[int, float, int]:
 
 @compiled
 def _holds(crowd: Crowd, j: int, lane: int, until: float) -> bool:
-    """Returns whether a vehicle has a grant for a lane, and its rear has not yet passed station ``until`` of
-    it."""
+    """Returns whether a vehicle has, or had, a grant for a lane, and its rear has not yet passed station
+    ``until`` of it."""
     lanes, numbers, whole, ways = crowd.lanes, crowd.numbers, crowd.whole, crowd.ways
-    k = whole[j, AT]
-    ahead = -numbers[j, S]
-    for q in range(k, whole[j, GRANTED] + 1):
+    begin, ahead = max(whole[j, AT] - 3, 0), -numbers[j, S]
+    for q in range(begin, whole[j, AT]):
+        ahead -= lanes.length[ways[j, q]]
+    for q in range(begin, max(whole[j, GRANTED] + 1, whole[j, AT])):
         if ways[j, q] == lane and -ahead - numbers[j, LENGTH] / 2.0 < until:
             return True
         ahead += lanes.length[ways[j, q]]
-    behind = -numbers[j, S]
-    for q in range(k - 1, max(k - 4, -1), -1):
-        behind -= lanes.length[ways[j, q]]
-        if -behind - numbers[j, LENGTH] / 2.0 > lanes.length[ways[j, q]]:
-            break
-        if ways[j, q] == lane and lanes.junction[lane] >= 0 and -behind - numbers[j, LENGTH] / 2.0 < until:
-            return True
     return False
 
 
@@ -231,14 +225,6 @@ def time_over(v: float, way: float, top: float, pull: float) -> float:
     if (v + top) / 2.0 * rise >= way:
         return (-v + math.sqrt(v * v + 2.0 * pull * way)) / pull
     return rise + (way - (v + top) / 2.0 * rise) / top
-
-
-@compiled
-def _slowest(lanes: LaneMap, lane: int) -> float:
-    least = lanes.limit[lane]
-    for n in range(lanes.first[lane], lanes.first[lane + 1]):
-        least = min(least, lanes.sample[n, PV])
-    return float(max(least, 2.0))
 
 
 @compiled
@@ -272,7 +258,7 @@ def _has_room(crowd: Crowd, i: int, k: int, ahead: float, count: int) -> bool:
     if lanes.onward_of[there] < lanes.onward_of[there + 1]:
         queue = 0.0
         for j in range(len(numbers)):
-            if j != i and (whole[j, STATE] == DRIVES or whole[j, STATE] == STANDS_HIT):
+            if j != i and whole[j, STATE] != ABSENT:
                 last = max(whole[j, AT], whole[j, GRANTED] + 1)
                 if numbers[j, WAIT] > max(numbers[i, WAIT], PATIENCE):  # else cars leave no room for a bus
                     last = max(last, whole[j, AT] + 2)
@@ -308,7 +294,8 @@ def _may_enter(crowd: Crowd, i: int, k: int, ahead: float, is_over: bool, count:
     lanes, numbers, whole, ways, entries = crowd.lanes, crowd.numbers, crowd.whole, crowd.ways, crowd.entries
     lane, row = ways[i, k], numbers[i]
     begin, end = lanes.conflict_of[lane], lanes.conflict_of[lane + 1]
-    slowest = _slowest(lanes, lane)
+    bends = lanes.sample[lanes.first[lane] : lanes.first[lane + 1], PV]
+    slowest = max(min(lanes.limit[lane], bends.min()), 2.0)
     for c in range(begin, end):
         other, first, last = lanes.conflict[c, 0], lanes.conflict_at[c, 2], lanes.conflict_at[c, 3]
         for n in range(0 if is_over else count):  # also somebody without a grant, such as a pedestrian
@@ -346,22 +333,12 @@ def _is_first(crowd: Crowd, i: int, k: int, count: int) -> bool:
     for q in range(whole[i, AT], k):
         lane = ways[i, q]
         for j in range(len(numbers)):
-            if (
-                j == i
-                or whole[j, STATE] == ABSENT
-                or whole[j, STATE] == GONE
-                or ways[j, whole[j, AT]] != lane
-            ):
+            if j == i or whole[j, STATE] == ABSENT or ways[j, whole[j, AT]] != lane:
                 continue
             if ahead + numbers[j, S] > 0.0 and whole[j, GRANTED] <= whole[j, AT]:
                 return False
         for n in range(count):
-            if (
-                entries[n, 0] == lane
-                and entries[n, 4] < 0.0
-                and ahead + entries[n, 1] > 0.0
-                and entries[n, 3] != ASKS
-            ):
+            if entries[n, 0] == lane and entries[n, 4] < 0.0 and ahead + entries[n, 1] > 0.0:
                 return False
         ahead += crowd.lanes.length[lane]
     return True
@@ -429,11 +406,12 @@ def _change(crowd: Crowd, i: int, side: int, own: float, wanted: float, count: i
         if entry[4] == i or entry[3] == ASKS:
             continue
         if entry[0] != target:
-            for at in range(lanes.before_of[target], lanes.before_of[target + 1]):
-                if lanes.before[at] == entry[0]:
-                    back, offset = True, -lanes.length[lanes.before[at]]
+            before = int(entry[0])
+            for at in range(lanes.onward_of[before], lanes.onward_of[before + 1]):
+                back = back or lanes.onward[at] == target
             if not back:
                 continue
+            offset = -lanes.length[before]
         low, high = entry[1] + offset - s, entry[2] + offset - s
         if low + high > 0.0 and not back:
             gap = low - row[LENGTH] / 2.0
@@ -455,7 +433,7 @@ def _locate(crowd: Crowd) -> None:
     for i in range(len(numbers)):
         before = out[i, 3]
         out[i] = math.nan
-        if i == TESTED or whole[i, STATE] == ABSENT or whole[i, STATE] == GONE:
+        if i == TESTED or whole[i, STATE] == ABSENT:
             continue
         row = numbers[i]
         lane = crowd.ways[i, whole[i, AT]]
@@ -493,7 +471,7 @@ def _boxes(crowd: Crowd, bodies: FloatArray) -> int:
     lanes, numbers, whole, entries = crowd.lanes, crowd.numbers, crowd.whole, crowd.entries
     count = 0
     for i in range(len(numbers)):
-        if whole[i, STATE] == ABSENT or whole[i, STATE] == GONE:
+        if whole[i, STATE] == ABSENT:
             continue
         begin, state, row = count, crowd.states[i], numbers[i]
         count = touched(
@@ -591,7 +569,7 @@ def _move(lanes: LaneMap, row: FloatArray, whole: IntArray, way: IntArray) -> No
             whole[OLD] = -1
     while row[S] > lanes.length[way[whole[AT]]]:
         if whole[AT] + 1 >= whole[LAST]:
-            whole[STATE] = GONE
+            whole[STATE] = ABSENT
             break
         row[S] -= lanes.length[way[whole[AT]]]
         whole[AT] += 1
@@ -614,7 +592,7 @@ def step(crowd: Crowd, bodies: FloatArray, room: FloatArray, tick: int) -> None:
     order = np.argsort(-numbers[:, WAIT], kind="mergesort")
     for at in range(len(numbers)):
         i = order[at]
-        if i == TESTED or whole[i, STATE] == ABSENT or whole[i, STATE] == GONE:
+        if i == TESTED or whole[i, STATE] == ABSENT:
             continue
         if whole[TESTED, STATE] == DRIVES:
             one, other, size, its = states[i], states[TESTED], numbers[i], numbers[TESTED]
@@ -631,7 +609,7 @@ def step(crowd: Crowd, bodies: FloatArray, room: FloatArray, tick: int) -> None:
         lane = int(entries[n, 0])
         room[lane] = min(room[lane], entries[n, 1])
     for i in range(len(numbers)):
-        if i != TESTED and (whole[i, STATE] == DRIVES or whole[i, STATE] == STANDS_HIT):
+        if i != TESTED and whole[i, STATE] != ABSENT:
             _move(crowd.lanes, numbers[i], whole[i], crowd.ways[i])
     _locate(crowd)
 

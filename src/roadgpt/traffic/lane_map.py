@@ -55,9 +55,6 @@ class LaneMap(NamedTuple):
     """The lanes that continue the lanes, one lane after another; ``onward_of`` has where each lane begins
     there."""
     onward_of: IntArray
-    before: IntArray
-    """The lanes that lead into the lanes; ``before_of`` has where each lane begins."""
-    before_of: IntArray
     stop: FloatArray
     """The station at which traffic waits that may not enter the junction at the lane's end."""
     has_stop_sign: NDArray[np.bool_]
@@ -98,18 +95,18 @@ def lane_map(
     number = {lane.id: n for n, lane in enumerate(used)}
     samples, stations, steps, usable, longest = [], [], [], [], []
     for lane in used:
-        rows, step, stretch = _sampled(lane)
-        samples.append(rows)
-        station = lane.station(np.arange(len(rows)) * step)
+        sample, step, stretch = _sampled(lane)
+        samples.append(sample)
+        station = lane.station(np.arange(len(sample)) * step)
         stations.append(station if lane.is_along else lane.member.road.length - station)
         steps.append(step)
         usable.append(stretch)
-        spare = np.maximum(rows[:, PW] - WIDEST / 2 + OVER, 0.0)
-        longest.append(float(np.sqrt(8.0 * spare * (rows[:, PV] ** 2 / ACROSS)).min()))
+        spare = np.maximum(sample[:, PW] - WIDEST / 2 + OVER, 0.0)
+        longest.append(float(np.sqrt(8.0 * spare * (sample[:, PV] ** 2 / ACROSS)).min()))
     first = np.cumsum([0, *map(len, samples)])
     table = np.concatenate(samples)
-    onward, onward_of = _rows([[number[key] for key in lane.successors if key in number] for lane in used])
-    before, before_of = _rows([[number[key] for key in lane.predecessors if key in number] for lane in used])
+    rows, onward_of = _rows([[number[key] for key in lane.successors if key in number] for lane in used])
+    onward = np.array(rows, np.int64)
     flat, conflict_of = _rows([_conflicts(lanes, lane, number) for lane in used])
     cells, cell_of, grid = _grid(table, np.repeat(steps, np.diff(first)))
     length = np.array([lane.length for lane in used])
@@ -126,17 +123,15 @@ def lane_map(
         np.array([lane.member.profile.lanes[lane.id.lane].speed_limit or limit for lane in used]),
         sides,
         np.array([-1 if lane.member.junction is None else lane.member.junction for lane in used]),
-        np.array(onward, np.int64),
+        onward,
         onward_of,
-        np.array(before, np.int64),
-        before_of,
         np.array([lane.length if lane.stop is None else lane.stop for lane in used]),
         np.array([lane.control == "stop" for lane in used]),
         ends,
         np.array([_begins(lanes, lane, number) for lane in used]),
         np.array(longest),
         np.array([_leaves_ring(lanes, lane) for lane in used]),
-        *_to_exits(length, sides, np.array(onward, np.int64), np.diff(onward_of), ends),
+        *_to_exits(length, sides, onward, np.diff(onward_of), ends),
         np.array([row[:2] for row in flat], np.int64).reshape(-1, 2),
         np.array([row[2:] for row in flat], float).reshape(-1, 4),
         conflict_of,

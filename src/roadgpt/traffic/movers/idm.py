@@ -17,7 +17,7 @@ from roadgpt.network.lanes import Lanes, lanes_of
 from roadgpt.network.network import Leg, Network, RoadEnd
 from roadgpt.traffic import following as f
 from roadgpt.traffic.actor import SIZES, STEP, Actor, FloatArray
-from roadgpt.traffic.lane_map import PER_CHANGE, PV, PX, PY, lane_map, place_on
+from roadgpt.traffic.lane_map import PER_CHANGE, lane_map, place_on
 from roadgpt.traffic.lights import Lights
 
 if TYPE_CHECKING:
@@ -64,8 +64,7 @@ class IdmMover:
         self.lanes, self.ids = lane_map(lanes, stage.world.limits.speed_limit, _near(lanes, road))
         self.lights = stage.lights or Lights(network, stage.seed)
         self._ends = [RoadEnd(key.road, "end" if lanes[key].is_along else "start") for key in self.ids]
-        self._number = {key: n for n, key in enumerate(self.ids)}
-        self._path = _path(road, legs_of(road, stage.world), self._number)
+        self._path = _path(road, legs_of(road, stage.world), self.ids)
         self._rng = np.random.default_rng([self._seed, 0])
         self._exit_roads = np.array([self.ids[n].road for n in self.lanes.exits])
         size, longest = 64, max(len(self.ids) + 2 * KEPT, len(self._path[1])) + 1
@@ -106,14 +105,11 @@ class IdmMover:
             part = (end - begin) / count
             for k in range(count):
                 s = begin + part * (k + float(self._rng.uniform(0.3, 0.7)))
-                first = self.lanes.first[n]
-                here = self.lanes.sample[
-                    first + min(int(s / self.lanes.step[n]), self.lanes.first[n + 1] - first - 1)
-                ]
-                if car is not None and _is_close(car, here):
+                x, y, _, _, bend = place_on(self.lanes, n, s)
+                if car is not None and _is_close(car, x, y):
                     continue
                 far = max(part * 0.4 - 8.0, 0.0)
-                most = min(float(here[PV]), far / 1.5, self._stoppable(n, s))
+                most = min(bend, far / 1.5, self._stoppable(n, s))
                 self.enter(n, s, most)
         return self._shown()
 
@@ -245,7 +241,7 @@ class IdmMover:
         """Takes out who has left, and plans on for who needs it."""
         whole, ways, rows = self._whole, self._ways, self._rows
         at, last = whole[rows, f.AT], whole[rows, f.LAST]
-        has_left = whole[rows, f.STATE] == f.GONE
+        has_left = whole[rows, f.STATE] == f.ABSENT
         for n in np.flatnonzero((last - at < KEPT) & self._goes_on[ways[rows, last - 1]] & ~has_left):
             row, end = rows[n], last[n]
             rng = np.random.default_rng([self._seed, int(self._who[n]) + 1, self._tick])
@@ -258,7 +254,6 @@ class IdmMover:
             whole[row, [f.AT, f.GRANTED]] -= begin
             whole[row, f.LAST] = len(way)
         if has_left.any():
-            whole[rows[has_left], f.STATE] = f.ABSENT
             self._free += rows[has_left].tolist()
             self._rows, self._who = rows[~has_left], self._who[~has_left]
             self._present = int(self._rows.max(initial=0)) + 1
@@ -269,8 +264,8 @@ class IdmMover:
         return out
 
 
-def _is_close(car: "TestedCar", sample: FloatArray) -> bool:
-    dx, dy = sample[PX] - car.x, sample[PY] - car.y
+def _is_close(car: "TestedCar", x: float, y: float) -> bool:
+    dx, dy = x - car.x, y - car.y
     along = dx * math.cos(car.heading) + dy * math.sin(car.heading)
     near = AHEAD + 2.0 * car.speed
     return bool(-BEHIND - 2.0 * car.speed < along < near and math.hypot(dx, dy) < near)
@@ -289,14 +284,14 @@ def _near(lanes: Lanes, road: "Road") -> frozenset[Leg] | None:
     return None if len(found) == len(lanes) else frozenset(found)
 
 
-def _path(road: "Road", legs: tuple[Leg, ...], number: Mapping[Leg, int]) -> tuple[list[float], list[int]]:
+def _path(road: "Road", legs: Sequence[Leg], ids: Sequence[Leg]) -> tuple[list[float], list[int]]:
     """Returns the lanes that the tested car follows, and the stations at which they begin; where it changes
     lanes on a road, that road's last lane."""
     starts, lanes = [0.0], []
     for n, (leg, end) in enumerate(zip(legs, road.starts[1:], strict=True)):
         if n + 1 < len(legs) and legs[n + 1].road == leg.road:
             continue
-        lanes.append(number[leg])
+        lanes.append(ids.index(leg))
         starts.append(end)
     return starts, lanes
 
