@@ -23,11 +23,8 @@ def test_lanes_are_counted_from_the_kerb(road: str, lane: str, outside: int, lef
     (first, *_), network = legs_of(drawn, world), network_of(drawn, world)
     profile = network.road(first.road).profile
     own = sum(profile.edges_of(first.lane, 1.0)) / 2
-    middles = [
-        sum(profile.edges_of(number, 1.0)) / 2
-        for number, lane in profile.lanes.items()
-        if lane.kind == "driving"
-    ]
+    driven = [number for number, lane in profile.lanes.items() if lane.kind == "driving"]
+    middles = [sum(profile.edges_of(number, 1.0)) / 2 for number in driven]
     same = [each for each in middles if (each > 0) == (own > 0)]
     assert len(same) == 3
     assert len([each for each in same if abs(each) > abs(own) + 0.5]) == outside
