@@ -19,10 +19,14 @@ from roadgpt.brief.scene import (
     LIGHTS,
     NUMBERS,
     SPOTS,
+    STRUCTURES,
     WEATHER,
     Action,
     ActorKind,
     Flow,
+    Land,
+    Landform,
+    Lie,
     Light,
     Mark,
     Role,
@@ -138,10 +142,22 @@ def casts(draw: st.DrawFn) -> tuple[Role, ...]:
     return tuple(cast)
 
 
+LANDS = st.sampled_from(get_args(Landform)).flatmap(
+    lambda kind: st.builds(
+        Land,
+        kind=st.just(kind),
+        lie=st.none() if kind in STRUCTURES else st.none() | st.sampled_from(get_args(Lie)),
+        side=st.none() if kind in STRUCTURES else SIDES,
+        count=st.sampled_from([exactly(1), exactly(3)]),
+        length=maybe(amounts(1, 10_000)),
+    )
+)
 SCENES = drawn(
     Scene,
     speed=maybe(amounts(0, 250)),
     person=st.none() | st.just("robot"),
+    lane=st.sampled_from([None, 1, 2, -1, -4]),
+    landscape=st.lists(LANDS, max_size=2).map(tuple),
     actors=casts(),
     flow=st.none() | st.sampled_from(get_args(Flow)),
     oncoming=st.none() | st.sampled_from([*get_args(Flow), "none"]),
@@ -178,6 +194,7 @@ WORDS = (
     *("car", "truck x2", "adult", "cones", "ahead", "lane left", "crossing", "parked", "oncoming", ":", ","),
     *(";", "&&", "brake 6", "cut_in", "cross", "gap=30", "v=50", "ttc=2", "after turn 1", "with car 1 brake"),
     *("medium", "fog", "rain 5", "ego", "night", "wet", "x0", "turn", "5..3", "opposite"),
+    *("lane=0", "lane=-1", "lake", "along", "bridge"),
 )  # fmt: skip
 
 
@@ -231,7 +248,17 @@ def test_the_page_has_every_word_and_every_bound() -> None:
     section = PAGE.read_text(encoding="utf-8").split("## Scenes\n")[1].split("\n## ")[0]
     words = {*re.findall(r"[a-z_]+", section)}
     keys = {number.key for number in NUMBERS.values()}
-    assert not {*KINDS, *SPOTS, *DOINGS, *FLOWS, *LIGHTS, *get_args(Surface), *keys} - words
+    known = {
+        *KINDS,
+        *SPOTS,
+        *DOINGS,
+        *FLOWS,
+        *LIGHTS,
+        *get_args(Surface),
+        *get_args(Landform),
+        *get_args(Lie),
+    }
+    assert not {*known, *keys} - words
     table = [
         line.split("|")[1:4]
         for line in section.splitlines()

@@ -26,6 +26,7 @@ from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Outline, outline
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.refusal import AnotherRoadError, NoRoomError, TooMuchError
+from roadgpt.brief.scene import land_remark
 from roadgpt.brief.sentence import sentence
 from roadgpt.brief.words import LARGEST_MAP, LEAST_RADIUS, STEEPEST, SURE, USUAL_MAP
 from roadgpt.chat import ChatSettings, plugin_of
@@ -185,7 +186,8 @@ def remarks(brief: Brief, map_size: float, friction: float | None = None) -> tup
         map_size: side of the square map in metres.
         friction: friction coefficient of the road; with None, a surface named in the description sets it."""
     things = (*brief.beside, *brief.scene.surfaces)
-    return (*beside.remarks(things, friction), *motorway_remarks(brief, map_size))
+    of_land = filter(None, [land_remark(brief.scene)])
+    return (*beside.remarks(things, friction), *of_land, *motorway_remarks(brief, map_size))
 
 
 def reader_of(name: str, chat: ChatSettings | None = None) -> Reader:

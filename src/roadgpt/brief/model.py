@@ -169,7 +169,7 @@ class Brief(Frozen):
     """The direction from which one comes at the start; the map has north at the top. Not for maps of roads.
     """
     surroundings: Surroundings | None = None
-    """Where the road lies: "country" for a country road, "residential" for a residential street."""
+    """What kind of road it is, other than a motorway; it sets the usual design speed."""
     speed: Annotated[float, Field(ge=SLOWEST, le=FASTEST)] | None = None
     """The design speed in km/h: see ``brief.design_speed``. Without a number, it is the usual one of
     ``surroundings``; that of a route holds for its roads without one."""
@@ -205,11 +205,9 @@ class Brief(Frozen):
         if any(stretch.comes_from for stretch in self.stretches):
             raise ValueError("a route comes from one direction at its start; write from= after ||")
         if self.map is not None and (self.comes_from or self.speed):
-            known = "from=, speed=, country and residential"
-            raise ValueError(f"{known} are for roads and routes; leave them out of a map of roads")
+            raise ValueError("a map of roads has no from=, no speed= and no kind of road; leave them out")
         if self.motorway and self.surroundings:
-            kinds = "a motorway, a country road or a residential street"
-            raise ValueError(f"a road is {kinds}; leave one of the words out")
+            raise ValueError(f"a road is of one kind, not motorway and {self.surroundings}; leave one out")
         return self
 
     @property

@@ -48,6 +48,9 @@ from roadgpt.brief.scene import (
     Action,
     ActorKind,
     Flow,
+    Land,
+    Landform,
+    Lie,
     Light,
     Mark,
     Patch,
@@ -98,7 +101,7 @@ OF_WHOLE = {
     "map_size": "map_size",
     "beside": "beside",
     "comes_from": "from",
-    "surroundings": "country, residential",
+    "surroundings": ", ".join(get_args(Surroundings)),
     "speed": "speed",
 }
 """The fields of a Brief that can be asked of a whole route, with their names in plans; a map has none of the
@@ -156,6 +159,12 @@ def _one_number(what: str, least: float, most: float, unit: str, example: str, t
             f"a {what} of {least:g} to {most:g} {unit}, not {text[:40]}; write for example {example}"
         )
     return number.lo
+
+
+def _lane_number(text: str) -> int:
+    if not re.fullmatch(r"-?\d", text):
+        raise BriefError(f"lane={text[:40]} is no lane; lane=1 is the one at the kerb, lane=-1 the innermost")
+    return int(text)
 
 
 _centre = partial(_one_of, CentreLine, "a plan has no centre line '{}'")
@@ -249,7 +258,10 @@ AN_ACTION = _Language(
     {number.key: field for field, number in NUMBERS.items() if field in Action.model_fields},
     of="manoeuvre",
 )
-ITSELF = _Language(_words(turn=Way, person=Person), {"v": "speed"}, of=TESTED_CAR)
+ITSELF = _Language(
+    _words(turn=Way, person=Person), {"v": "speed"}, {"lane": ("lane", _lane_number)}, of=TESTED_CAR
+)
+A_LAND = _Language(_words(lie=Lie, side=Side), {"len": "length"}, of="landscape", is_counted=True)
 SLIPPERY = "slippery"
 A_PATCH = _Language({}, {NUMBERS[field].key: field for field in Patch.model_fields}, of="slippery place")
 CONDITIONS = _words(flow=Flow, light=Light, surface=Surface)
@@ -523,7 +535,7 @@ def _made(model: type[Model], fields: dict[str, object], text: str) -> Model:
 
 def scene_plan(scene: Scene) -> str:
     """Returns a scene as it stands in a plan, such as "truck ahead gap=30: brake; medium"; "" for none."""
-    itself = _written(scene, ITSELF)
+    itself = _written(scene, ITSELF) + ([f"lane={scene.lane}"] if scene.lane else [])
     line = [" ".join([TESTED_CAR, *itself])] if itself else []
     for role in scene.actors:
         actor = _marked([role.kind, *_times(role.count)], role, AN_ACTOR)
@@ -533,7 +545,8 @@ def scene_plan(scene: Scene) -> str:
     line += [f"parked {side}" for side in scene.parked]
     line += [f"{name} {amount_text(number)}" for name in WEATHER if (number := getattr(scene, name))]
     patches = [" ".join([SLIPPERY, *_written(patch, A_PATCH)]) for patch in scene.slippery]
-    return "; ".join(filter(None, [*line, scene.light, scene.surface, *patches]))
+    lands = [" ".join([each.kind, *_times(each.count), *_written(each, A_LAND)]) for each in scene.landscape]
+    return "; ".join(filter(None, [*line, scene.light, scene.surface, *patches, *lands]))
 
 
 def _marked(head: list[str], thing: Role | Action, language: _Language) -> str:
@@ -545,7 +558,7 @@ def read_scene(text: str) -> Scene:
     part of the language, or the scene contradicts itself.
     """
     fields: dict[str, object] = {}
-    actors, patches, rows = [], [], set[str]()
+    actors, patches, lands, rows = [], [], [], set[str]()
     for part in filter(None, map(str.strip, text.split(";"))):
         first, *words = part.replace(":", " : ").split()
         if first == "parked":
@@ -563,16 +576,20 @@ def read_scene(text: str) -> Scene:
             _read_words(fields, words, ITSELF)
         elif first == SLIPPERY:
             patches.append(_made(Patch, _read_words({}, words, A_PATCH), part))
+        elif first in get_args(Landform):
+            lands.append(_made(Land, _read_words({"kind": first}, words, A_LAND), part))
         elif first in WEATHER and len(words) < 2:
             _set(fields, first, read_amount(words[0]) if words else WEATHER[first])
         elif first in CONDITIONS and not words:
             _set(fields, *CONDITIONS[first])
         else:
             known = (*get_args(ActorKind), TESTED_CAR, "oncoming", "parked", SLIPPERY, *WEATHER, *CONDITIONS)
+            known += get_args(Landform)
             raise BriefError(
                 f"a scene has no '{part[:40]}'; its parts, divided by ;, begin with one of {', '.join(known)}"
             )
-    return _made(Scene, {**fields, "actors": tuple(actors), "parked": rows, "slippery": tuple(patches)}, text)
+    of_all = {"actors": tuple(actors), "slippery": tuple(patches), "landscape": tuple(lands)}
+    return _made(Scene, {**fields, "parked": rows, **of_all}, text)
 
 
 def _read_role(text: str) -> Role:

@@ -6,11 +6,11 @@ another, each begun by a condition. A number may be a range, from which each dri
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Literal, NamedTuple, Self, get_args
 
-from pydantic import AfterValidator, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from roadgpt.brief.amount import Amount, Frozen, exactly, span
 from roadgpt.brief.junctions import Side
-from roadgpt.brief.words import SURFACES
+from roadgpt.brief.words import MOST_LANES, SURFACES
 
 ActorKind = Literal[
     "car", "van", "truck", "bus", "motorcycle", "bicycle", "adult", "child", "animal",
@@ -29,6 +29,11 @@ What = Literal[
     "change_lane", "overtake", "merge", "pull_out", "turn_off", "turn_in", "turn_across", "cross",
     "run_light", "run_sign", "reverse", "wrong_way",
 ]  # fmt: skip
+Landform = Literal[
+    "valley", "ridge", "lake", "river", "coast", "forest", "town",
+    "bridge", "tunnel", "cutting", "embankment", "tree_lined",
+]  # fmt: skip
+Lie = Literal["along", "across", "through"]
 FLOWS: Mapping[Flow, int] = {"light": 5, "medium": 12, "dense": 25}
 """How many vehicles drive on each km of a lane."""
 USUAL: Mapping[str, int] = {"adult": 5, "child": 5, "bicycle": 15, "animal": 20}
@@ -110,7 +115,7 @@ NUMBERS: Mapping[str, Number] = {
     "fog": Number("fog", 5, 1000, "fog with a visual range of {} metres"),
     "rain": Number("rain", 0.1, 200, "rain of {} mm/h"),
     "friction": Number("mu", 0.05, 2, "with a friction of {}"),
-    "length": Number("len", 1, 1000, "on {} metres"),
+    "length": Number("len", 1, 10_000, "on {} metres"),
 }
 CUES = ("time", "distance", "ttc", "headway", "gap", "station", "at")
 """The conditions on which an action begins. Time and distance are those of the tested car since its start;
@@ -299,11 +304,47 @@ class Patch(Frozen):
         return " ".join(["a slippery place", *_said(self)])
 
 
+STRUCTURES: tuple[Landform, ...] = ("bridge", "tunnel", "cutting", "embankment")
+
+
+class Land(Frozen):
+    """Something of the landscape that the road lies in, or several alike. It is understood, not built."""
+
+    kind: Landform
+    lie: Lie | None = None
+    """How the road leads: along it, across it or through it."""
+    side: Side | None = None
+    count: Amount = exactly(1)
+    length: Amount | None = None
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        _given(self, self.kind)
+        if self.kind in STRUCTURES and (self.lie or self.side):
+            raise ValueError(f"'{self.kind}' has no {self.lie or self.side}; leave it out")
+        return self
+
+    def __str__(self) -> str:
+        if self.kind == "tree_lined":
+            return "an avenue of trees"
+        is_one = self.count == exactly(1)
+        some = f"a {self.kind}" if is_one else f"{self.count} {self.kind}s"
+        lie = {"along": "along the road", "across": "to cross", "through": "to go through"}.get(
+            self.lie or ""
+        )
+        side = f"on the {self.side}" if self.side else ""
+        long = f"{self.length} metres long" if self.length else ""
+        return " ".join(filter(None, [some, lie, side, long]))
+
+
 class Scene(Frozen):
-    """The others on the road and the conditions of a drive."""
+    """The others on the road, the conditions of a drive, and the landscape."""
 
     speed: Amount | None = None
     """The speed of the tested car at its start in km/h."""
+    lane: Annotated[int, Field(ge=-MOST_LANES, le=MOST_LANES)] | None = None
+    """The lane in which the tested car starts, of those of its direction: 1 is the one at the kerb, -1 the
+    innermost one."""
     turn: Literal["left", "right", "straight"] | None = None
     """The way that the tested car takes at the first junction; None: that of the route."""
     person: Person | None = None
@@ -323,10 +364,13 @@ class Scene(Frozen):
     """Night, or a sun that is low ahead of the tested car at its start; None: day."""
     surface: Surface | None = None
     slippery: tuple[Patch, ...] = ()
+    landscape: tuple[Land, ...] = ()
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
         _given(self, "a scene")
+        if self.lane == 0:
+            raise ValueError("lanes count from 1 at the kerb, or from -1 at the innermost one; write lane=1")
         for role in self.actors:
             for event in (action.at for action in role.actions if action.at and action.at.what):
                 same = [each for each in self.actors if each.kind == event.of][event.number - 1 :][:1]
@@ -356,6 +400,20 @@ class Scene(Frozen):
                 side = "right" if side == "right" else "left"
                 found[side] = max(found[side], count)
         return found
+
+    def lanes_needed(self, left_hand: bool) -> int:
+        """Returns how many lanes the scene needs in the direction of the tested car."""
+        left, right = self.lanes_beside.values()
+        inner, outer = (right, left) if left_hand else (left, right)
+        if self.lane is None:
+            return 1 + inner + outer
+        return max(2, self.lane + inner if self.lane > 0 else outer - self.lane)
+
+    def lane_driven(self, left_hand: bool) -> int | None:
+        """Returns the lane in which the tested car starts, counted as ``lane``, where the scene says or needs
+        one; None if it does not matter."""
+        beside = self.lanes_beside
+        return self.lane or (1 + beside["left" if left_hand else "right"] if any(beside.values()) else None)
 
     @property
     def surfaces(self) -> tuple[Surface, ...]:
@@ -398,9 +456,19 @@ def scene_text(scene: Scene) -> str:
     return "; ".join(_parts(scene))
 
 
+def land_remark(scene: Scene) -> str:
+    """Returns a sentence on the landscape of a scene, which is not built; empty if there is none."""
+    lands = ", ".join(map(str, scene.landscape))
+    return f"not built yet: {lands}; the road is made without it" if lands else ""
+
+
 def _parts(scene: Scene) -> Iterator[str]:
-    if scene.speed:
-        yield f"the tested car starts at {scene.speed} km/h"
+    starts = [f"at {scene.speed} km/h"] if scene.speed else []
+    if scene.lane:
+        inner = "the innermost lane" if scene.lane == -1 else f"lane {-scene.lane} from the inside"
+        starts.append(f"in {f'lane {scene.lane} from the kerb' if scene.lane > 0 else inner}")
+    if starts:
+        yield f"the tested car starts {' '.join(starts)}"
     if scene.turn:
         yield f"it goes {scene.turn} at the junction"
     if scene.person:
@@ -417,4 +485,4 @@ def _parts(scene: Scene) -> Iterator[str]:
         yield LIGHTS[scene.light]
     if scene.surface:
         yield SURFACES[scene.surface].said
-    yield from map(str, scene.slippery)
+    yield from map(str, (*scene.slippery, *scene.landscape))

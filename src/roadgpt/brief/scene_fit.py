@@ -39,12 +39,14 @@ def fitted(brief: Brief, scene: Scene, limit: float) -> Brief:
     the speed limit in m/s. Raises BriefError if the Brief excludes it. Where the scene does not say the speed
     of the tested car, the Brief excludes no length and no bend: the car then begins as fast as it can."""
     check_scene(scene, brief)
-    if brief.map is not None or not (scene.actors or scene.speed or scene.slippery or scene.turn):
+    needs = (scene.actors, scene.speed, scene.lane, scene.slippery, scene.turn)
+    if brief.map is not None or not any(needs):
         return brief
     speed = _most(scene.speed) / KMH if scene.speed else limit
     before, stop = _until_stop(scene, speed, brief), speed**2 / 2 / STOPS
+    lanes = scene.lanes_needed(brief.left_hand)
     if not brief.stretches:
-        return _suited(brief, scene, speed, before, before + stop)
+        return _suited(brief, scene, lanes, speed, before, before + stop)
     places = [place for place in brief.junctions if place.kind not in (*LANE_KINDS, *RAMPS)]
     at_junction = bool(scene.turn) or any(role.where in ("junction", "roundabout") for role in scene.actors)
     first, *others = brief.stretches
@@ -62,7 +64,7 @@ def fitted(brief: Brief, scene: Scene, limit: float) -> Brief:
             if not (is_straight or place.kind in LANE_KINDS):
                 break
             before -= min(_length(road).hi + JUNCTION, before)
-    stretches = (_suited(first, scene, speed, until, before), *others)
+    stretches = (_suited(first, scene, lanes, speed, until, before), *others)
     return brief.model_copy(update={"stretches": stretches, "junctions": tuple(junctions)})
 
 
@@ -132,10 +134,9 @@ def _with_way(place: JunctionClause, scene: Scene) -> JunctionClause:
     )
 
 
-def _suited(road: Brief, scene: Scene, speed: float, straight: float, metres: float) -> Brief:
+def _suited(road: Brief, scene: Scene, lanes: int, speed: float, straight: float, metres: float) -> Brief:
     """Asks of a road for lanes, a length in metres, and bends that are wide, or begin after a straight."""
     road = _drivable(road, straight, speed, scene.speed is not None)
-    lanes = 1 + sum(scene.lanes_beside.values())
     if lanes > 1 and span(road.lanes).lo < lanes <= span(road.lanes).hi:
         road = road.model_copy(update={"lanes": Amount(lo=lanes, hi=road.lanes and road.lanes.hi)})
     have, metres = _length(road), float(ceil(metres / 10) * 10)
@@ -231,5 +232,14 @@ def _faults(scene: Scene, brief: Brief) -> Iterator[str]:
         for mark in filter(None, (role.at, *(action.at for action in role.actions))):
             if mark.number > (count := counts.get(mark.of, inf)):
                 yield f"'{role}' needs {mark.of} {mark.number}, and there are {count:g}; change one of them"
-    if 2 <= along < (least := 1 + sum(scene.lanes_beside.values())):
+    if scene.lane and abs(scene.lane) > along:
+        yield f"the tested car's lane={scene.lane} needs more lanes; write lanes={abs(scene.lane)}"
+    needs = scene.lanes_beside
+    inner, outer = (
+        needs["right" if brief.left_hand else "left"],
+        needs["left" if brief.left_hand else "right"],
+    )
+    if scene.lane and (outer > scene.lane - 1 if scene.lane > 0 else inner > -scene.lane - 1):
+        yield f"there is no lane beside the tested car's lane={scene.lane} for those who are there; change it"
+    if 2 <= along < (least := scene.lanes_needed(brief.left_hand)):
         yield f"the scene needs {least} lanes in the direction of the tested car; write lanes={least}"

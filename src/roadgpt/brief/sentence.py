@@ -24,7 +24,14 @@ CENTRES: dict[CentreLine, str] = {
     "double": "a double centre line",
     "none": "no centre line",
 }
-SURROUNDINGS = {None: "road", "country": "country road", "residential": "residential street"}
+SURROUNDINGS = {
+    None: "road",
+    "country": "country road",
+    "urban": "urban road",
+    "residential": "residential street",
+    "mountain": "mountain road",
+    "access": "access road",
+}
 WAVY = ("serpentine", "zigzag", "winding", "slalom")
 """The kinds whose name stands for several turns; their ``count`` is the number of these turns."""
 
@@ -280,7 +287,7 @@ def _joined(*words: str) -> str:
 
 
 def _article(text: str) -> str:
-    vowel = text[:1].lower() in "aei" or text.startswith(("up", "S-", "8", "11 ", "18 ", "11.", "18."))
+    vowel = text[:1].lower() in "aei" or text.startswith(("up", "ur", "S-", "8", "11 ", "18 ", "11.", "18."))
     return "an " if vowel else "a "
 
 

@@ -39,7 +39,7 @@ Kind = Literal[
 
 
 MOST_LANES = 4  # in one direction
-Surroundings = Literal["country", "residential"]
+Surroundings = Literal["country", "urban", "residential", "mountain", "access"]
 Compass = Literal["west", "southwest", "south", "southeast", "east", "northeast", "north", "northwest"]
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from roadgpt.brief.beside import surface_remark
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import plan, scene_plan
-from roadgpt.brief.scene import Scene, scene_text
+from roadgpt.brief.scene import Scene, land_remark, scene_text
 from roadgpt.brief.scene_fit import fitted
 from roadgpt.design.road_search import sufficient_map
 from roadgpt.road import World
@@ -75,8 +75,9 @@ def scene_remark(brief: Brief, found: World) -> str:
     if brief.scene == found.scene:
         return ""
     if brief.scene == Scene():
+        land = f"; {land_remark(found.scene)}" if found.scene.landscape else ""
         friction = f"; friction {found.site.friction:g}" if found.scene.surfaces else ""
-        return f"on the road: {scene_text(found.scene)}{friction}"
+        return f"on the road: {scene_text(found.scene)}{friction}{land}"
     return f"the words have a scene, but --scene '{scene_plan(found.scene)}' is set and used"
 
 

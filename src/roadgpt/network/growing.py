@@ -88,9 +88,8 @@ def build_route(design: Design, world: World) -> Route:
         network, passed, shifts = grown.builder.network(), grown.passed, grown.shifts
     if design.left_hand:
         network, shifts = network.mirrored, {road: -shift for road, shift in shifts.items()}
-    beside = world.scene.lanes_beside
-    outside = beside["left" if design.left_hand else "right"] if any(beside.values()) else None
-    return Route.along(network, legs_along(network, passed, shifts, outside) if passed else [])
+    lane = world.scene.lane_driven(design.left_hand)
+    return Route.along(network, legs_along(network, passed, shifts, lane) if passed else [])
 
 
 @dataclass

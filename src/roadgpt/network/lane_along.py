@@ -126,13 +126,13 @@ def _blended(one: Width, other: Width, knots: Array) -> Width:
 
 
 def legs_along(
-    network: Network, roads: Sequence[int], shifts: Mapping[int, int], outside: int | None = None
+    network: Network, roads: Sequence[int], shifts: Mapping[int, int], first: int | None = None
 ) -> list[Leg]:
     """Returns the legs of a route along the roads with these ids: on each road, one leg for each lane that it
     uses.
 
     A route begins in the outermost lane from which it can go on (the rightmost one, with traffic on the
-    right), or in the one that has ``outside`` lanes outside of it, if there is one. ``shifts`` are the
+    right), or in lane ``first``: 1 is the outermost one, -1 the innermost. ``shifts`` are the
     required lane changes by road: the number of lanes to the left, negative to the right. Otherwise the route
     changes lanes only where its lane does not lead to the next road or would
     prevent a required change, and as late as possible: on the last road before the new lane is needed. Raises
@@ -145,8 +145,8 @@ def legs_along(
     ]
     profile, shift = network.road(roads[0]).profile, shifts.get(roads[0], 0)
     lane = max(ways[0], key=abs) if ways else profile.side
-    if outside is not None and len(profile.along_ids) > outside:
-        lane = profile.along_ids[-1 - outside]
+    if first is not None and abs(first) <= len(profile.along_ids):
+        lane = profile.along_ids[-first if first > 0 else -1 - first]
     lane += -shift if profile.leads_along(lane) else shift
     found: list[Leg] = []
     for n, road in enumerate(roads):

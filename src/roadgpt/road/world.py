@@ -429,8 +429,12 @@ class World(BaseModel):
 
     def _profile(self, length: float) -> "Profile":
         profile = self.section.profile(length)
-        beside = self.scene.lanes_beside["right"]
-        return replace(profile, driven=max(profile.driven - beside, 0)) if beside else profile
+        lane = self.scene.lane_driven(profile.left_hand)
+        if lane is None:
+            return profile
+        return replace(
+            profile, driven=min(max(profile.driven + 1 - lane, 0) if lane > 0 else -1 - lane, profile.driven)
+        )
 
     def lay(self, road: "Road") -> "Road":
         """Returns the road with the lanes and banked bends of this World's ``section``. A road that has a
