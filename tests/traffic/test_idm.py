@@ -216,22 +216,24 @@ def test_who_is_met_head_on_in_its_own_lane_brakes():
     assert states[0, SPEED] < 12.0
 
 
-def test_who_gives_way_lets_the_tested_car_pass_and_then_goes():
-    """A side road with a stop sign; the tested car drives by on the road with priority."""
+@pytest.mark.parametrize("speed", [13.0, 0.0])
+def test_who_gives_way_lets_the_tested_car_pass_and_then_goes(speed):
+    """A side road with a stop sign; the tested car drives by on the road with priority, or stands before the
+    junction, which may not keep the other for ever."""
     own = stage("straight 100 // t_junction straight priority // straight 100")
     mover = IdmMover(own, "light", is_filled=False)
     mover.comes_in = False
-    network = network_of(own.road, own.world)
+    network, crossing = network_of(own.road, own.world), own.road.passages[0]
     waits = next(
         n for n, key in enumerate(mover.ids)
         if mover.lanes.begins[n] and lanes_of(network)[key].control in ("yield", "stop")
     )  # fmt: skip
-    s, station = max(mover.lanes.length[waits] - 30.0, 5.0), 5.0
+    s, station = max(mover.lanes.length[waits] - 30.0, 5.0), 5.0 if speed else crossing.start - 4.0
     lane = own.world.profile_of(own.road).middle(0.0)
 
     def tested(station):
         x, y, _ = own.road.at(station, lane)
-        return traffic.TestedCar(x, y, float(own.road.heading(station)), 13.0, station, lane, 4.7, 1.86)
+        return traffic.TestedCar(x, y, float(own.road.heading(station)), speed, station, lane, 4.7, 1.86)
 
     mover.start(tested(station))
     mover.enter(waits, s, 8.0)
@@ -239,19 +241,19 @@ def test_who_gives_way_lets_the_tested_car_pass_and_then_goes():
     turns = mover.lanes.onward[begin[waits] : begin[waits + 1]]
     turn = next(n for n in turns if leg in lanes_of(network).gives_way_to(mover.ids[n]))
     mover._ways[1, 1], mover._whole[1, 1] = turn, 2  # from where on it plans anew
-    crossing = own.road.passages[0]
-    entered = None
-    for tick in range(int((own.road.length - station) / 13.0 / STEP)):
-        car = tested(station + 13.0 * tick * STEP)
+    entered, stood = None, 0.0
+    for tick in range(int((own.road.length - 5.0) / 13.0 / STEP)):
+        car = tested(station + speed * tick * STEP)
         states = mover.move(tick * STEP, car, NOBODY)
         lane_now = mover._ways[mover._rows[0], mover._whole[mover._rows[0], 0]] if len(mover._rows) else -1
         if entered is None and lane_now >= 0 and mover.lanes.junction[lane_now] >= 0:
             entered = car.s
+        stood += STEP * (entered is None and states[0, SPEED] < 0.3)
         if not math.isnan(states[0, X]):
             box = shapely.Polygon(corners(states[0], mover.actors[0].size))
             assert not box.intersects(shapely.Point(car.x, car.y).buffer(1.0))
     assert entered is not None
-    assert entered > crossing.start
+    assert entered > crossing.start if speed else 3.0 < stood < 10.0
 
 
 def test_lights_never_show_green_to_ways_that_cross_and_opposite_arms_have_it_together():

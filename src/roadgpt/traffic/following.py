@@ -236,13 +236,13 @@ def _comes_before(crowd: Crowd, i: int, j: int, other: int, first: float, leaves
     if q < 0 or crowd.ways[j, q] != other or (before >= 0 and crowd.lights[before] == RED):
         return False
     line, v, waits = away - numbers[j, LENGTH] / 2.0, numbers[j, V], numbers[i, WAIT]
-    if j != TESTED:
-        if waits > PATIENCE and (before < 0 or line > v * v / (2.0 * EASY) + 5.0):
-            return False
-        if v < STANDING and waits > TURN:  # if it has waited longer, it was asked before, and cannot go
-            return False
+    if j != TESTED and waits > PATIENCE and (before < 0 or line > v * v / (2.0 * EASY) + 5.0):
+        return False
+    turn = TURN if j != TESTED else 2.0 * TURN  # so that not both begin to move at once
+    if v < STANDING and waits > turn:  # if it has waited longer, it was asked before, and cannot go
+        return False
     arrives = (line + first) / max(v, 3.0)
-    if j == TESTED and v > STANDING:
+    if j == TESTED:
         arrives = time_over(v, line + first, crowd.lanes.limit[other], SPRINT)
     return bool(arrives < leaves + MARGIN)
 
@@ -311,8 +311,7 @@ def _may_enter(crowd: Crowd, i: int, k: int, ahead: float, is_over: bool, count:
                 continue
             if _holds(crowd, j, other, last):
                 return False
-            goes_first = j == TESTED and numbers[j, V] > STANDING  # also if neither gives way
-            if is_over or lanes.conflict[c, 1] < (0 if goes_first else 1):
+            if is_over or lanes.conflict[c, 1] < (0 if j == TESTED else 1):  # it goes first among equals
                 continue
             if _comes_before(crowd, i, j, other, first, leaves):
                 return False
