@@ -144,7 +144,7 @@ def legs_along(
         for n, (each, lanes) in enumerate(zip(ways, fit[1:], strict=True))
     ]
     profile, shift = network.road(roads[0]).profile, shifts.get(roads[0], 0)
-    lane = max(ways[0], key=abs) if ways else profile.side
+    lane = max(ways[0], key=abs) if ways else profile.along_ids[-1]
     if outside is not None and len(profile.along_ids) > outside:
         lane = profile.along_ids[-1 - outside]
     lane += -shift if profile.leads_along(lane) else shift
