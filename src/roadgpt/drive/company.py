@@ -14,7 +14,7 @@ from roadgpt.compiled import bound, compiled, inlined
 from roadgpt.drive.drive import COLUMNS, Box, FloatArray
 from roadgpt.drive.view import LightAhead, Other, Others
 from roadgpt.network.lanes import HEADROOM
-from roadgpt.traffic import STEP, Actor, TestedCar, Traffic
+from roadgpt.traffic import STEP, TestedCar, Traffic
 from roadgpt.traffic.actor import bodies
 from roadgpt.traffic.boxes import part_inside, touch
 
@@ -197,8 +197,8 @@ class Company:
         if touches:
             self._monitor.touch(time)
         _, order, seen = self._found
-        boxes = seen[:count].copy()
-        said = zip([self._kinds[k] for k in order[:count].tolist()], *boxes.T[:6].tolist(), strict=True)
+        boxes, kinds = seen[:count].copy(), [self._kinds[k] for k in order[:count].tolist()]
+        said = zip(kinds, *boxes.T[:6].tolist(), strict=True)
         others = Others(map(tuple.__new__, repeat(Other), said))  # faster than Other._make
         others.boxes = boxes
         return others
@@ -210,13 +210,10 @@ class Company:
         self._samples += 1
         if came := self._traffic.actors[len(self._kinds) :]:
             self._kinds += [each.kind for each in came]
-            looks = [(*each.size, each.kind in VEHICLES, self._reach(each)) for each in came]
+            reach = [min(SEEN, visual_range(self._scene, each.kind) + each.size.length / 2) for each in came]
+            looks = [(*each.size, each.kind in VEHICLES, far) for each, far in zip(came, reach, strict=True)]
             self._looks, count = np.vstack([self._looks, looks]), len(self._kinds)
             self._found = np.empty((count, 5)), np.empty(count, np.int64), np.empty((count, 7))
-
-    def _reach(self, actor: Actor) -> float:
-        """Returns from how many metres between their middles the driver sees an actor."""
-        return min(SEEN, visual_range(self._scene, actor.kind) + actor.size.length / 2)
 
     def bodies(self, time: float) -> "list[Body]":
         """Returns the bodies of the others at this time, for images."""
