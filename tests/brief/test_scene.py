@@ -18,6 +18,7 @@ from roadgpt.brief.scene import (
     FLOWS,
     LIGHTS,
     NUMBERS,
+    ON_ITS_WAY,
     SPOTS,
     STRUCTURES,
     WEATHER,
@@ -110,7 +111,8 @@ def roles(draw: st.DrawFn) -> Role:
     kind = draw(st.sampled_from(SPOTS[where].who))
     can = [what for what in get_args(What) if kind in DOINGS[what].who]
     first = [what for what in can if where in DOINGS[what].starts]
-    rest = st.lists(actions(can), max_size=2) if can else st.just([])
+    later = [what for what in can if what not in ON_ITS_WAY or what in first]
+    rest = st.lists(actions(later), max_size=2) if later else st.just([])
     acts = st.builds(lambda one, more: (one, *more), actions(first), rest) if first else st.just(())
     side = SIDES if SPOTS[where].before_side else st.none()
     stands = where == "parked" or kind not in DOINGS["keep"].who

@@ -63,7 +63,7 @@ def test_boxes_touch_where_shapely_says_so_and_the_nearest_come_first() -> None:
         states[:, 0] *= rng.choice([1, 1, 30], n)
         states[rng.random(n) < 0.1] = np.nan
         car = np.array([1.0, -2.0, 0.0, rng.uniform(-9, 9), 4.7, 1.86])
-        looks, order = np.array([(*SIZES[kind][:2], 1, 200) for kind in kinds], float), np.zeros(n, np.int64)
+        looks, order = np.array([(*SIZES[kind], 1, 200) for kind in kinds], float), np.zeros(n, np.int64)
         count, touches = look_around(states, looks, car, order, np.zeros((n, 7)))
         box = shapely.Polygon(
             corners(np.array([*car[:4], 0.0]), SIZES["car"]._replace(length=4.7, width=1.86))

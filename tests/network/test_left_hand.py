@@ -23,6 +23,7 @@ from roadgpt.network import Route, build_route
 from roadgpt.network.markings import signs, strokes
 from roadgpt.network.paved import ribbon
 from roadgpt.road import Site, World, read_design
+from roadgpt.run import Setup, perform
 from tables import rows
 
 WORLD = World(site=Site(map_size=600))
@@ -149,3 +150,16 @@ def test_what_was_asked_for_is_there(line: str) -> None:
     has_sides = ("left" in line or "right" in line) and "side=" not in line and "lane_" not in line
     if has_sides and (route.passages or not brief.junctions):
         assert check.inspect(route, mirrored(other), WORLD) != ()
+
+
+@pytest.mark.parametrize(
+    "plan",
+    ["| lanes=2 against=2 divided", "| lanes=3 oneway || left_hand", "| lanes=2 against=2 || left_hand"],
+)
+def test_a_road_without_junctions_is_driven_in_its_outermost_lane(plan: str) -> None:
+    road = perform(plan, 1, setup=Setup(reader="plan", drives=False)).road
+    assert isinstance(road, Route)
+    profile = road.network.roads[0].profile
+    away = {lane: abs(sum(map(float, profile.edges_of(lane, 10.0)))) for lane in profile.along_ids}
+    assert len(away) > 1
+    assert [leg.lane for leg in road.legs] == [max(away, key=lambda lane: away[lane])]

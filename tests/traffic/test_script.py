@@ -246,6 +246,27 @@ def test_who_overtakes_is_first_behind_and_then_before(where: str) -> None:
     assert seen.left(0)[there][-1] == pytest.approx(0.0 if where == "behind" else 3.5, abs=0.01)
 
 
+@pytest.mark.parametrize("actions", ["swerve, swerve", "swerve shift=0.6, keep 1, swerve shift=0.6"])
+def test_a_second_swerve_goes_to_the_other_side(actions: str) -> None:
+    left = show(f"car ahead gap=30: {actions}").left(0)
+    there = np.flatnonzero(np.abs(left) > 0.3)
+    first, second = np.split(there, np.flatnonzero(np.diff(there) > 1) + 1)
+    assert (left[first] > 0).all()
+    assert (left[second] < 0).all()
+
+
+@pytest.mark.parametrize("later", ["turn_across", "cross", "run_light", "merge"])
+def test_who_drives_ahead_cannot_do_later_what_needs_a_way_of_its_own(later: str) -> None:
+    with pytest.raises(ValueError, match=f"who is ahead cannot {later}; that begins from"):
+        WORLD.changed(scene=f"car ahead: keep 1, {later}")
+
+
+def test_who_stands_where_it_is_to_go_does_not_go_on_turning() -> None:
+    seen = show("ego v=40; car ahead gap=40: stop time=1, wrong_way for=2, keep", lasts=12.0)
+    np.testing.assert_allclose(seen.left(0), 0.0, atol=0.01)
+    np.testing.assert_allclose(seen.states[:, 0, 3], 0.0, atol=1e-3)
+
+
 def test_places_across_the_lane() -> None:
     seen = show(
         "car ahead gap=30 overlap=40; truck ahead gap=60 impact=25; van lane left t=-0.4; "

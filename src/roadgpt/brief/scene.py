@@ -45,6 +45,8 @@ SEVERAL = {"bus": "buses", "child": "children", "cones": "cones"}
 """The plurals that are not made with an s."""
 ALONG = ("ahead", "behind", "lane", "far", "oncoming")
 LEAVES = ("cut_out", "change_lane")
+ON_ITS_WAY: tuple[What, ...] = ("merge", "turn_in", "turn_across", "cross", "run_light", "run_sign")
+"""What somebody does on a way of its own, on which it is from the begin on."""
 LANES_AWAY = {"lane": 1, "far": 2}
 ACROSS = ("crossing", "crosswalk", "junction", "beside")
 ANYWHERE = get_args(Where)
@@ -271,8 +273,9 @@ class Role(Frozen):
         for action in self.actions:
             if self.kind not in DOINGS[action.what].who:
                 raise ValueError(f"{one} has no '{action.what}'; leave it out")
-        if self.where not in (starts := DOINGS[first.what].starts):
-            raise ValueError(f"who is {spot.said} cannot {first.what}; that begins from: {', '.join(starts)}")
+            what, starts = action.what, DOINGS[action.what].starts
+            if self.where not in starts and (action is first or what in ON_ITS_WAY):
+                raise ValueError(f"who is {spot.said} cannot {what}; that begins from: {', '.join(starts)}")
         if first.what == "brake" and span(first.to).lo > span(self.speed).hi:
             raise ValueError(f"{one} cannot brake from {self.speed} to {first.to} km/h")
         return self

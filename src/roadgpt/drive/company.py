@@ -2,6 +2,7 @@
 of them."""
 
 import math
+from itertools import repeat
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,11 +10,11 @@ from numpy.typing import NDArray
 
 from roadgpt.brief.scene import VEHICLES
 from roadgpt.brief.visibility import visual_range
-from roadgpt.compiled import compiled, inlined
+from roadgpt.compiled import bound, compiled, inlined
 from roadgpt.drive.drive import COLUMNS, Box, FloatArray
 from roadgpt.drive.view import LightAhead, Other, Others
 from roadgpt.network.lanes import HEADROOM
-from roadgpt.traffic import STEP, Actor, TestedCar, Traffic
+from roadgpt.traffic import STEP, TestedCar, Traffic
 from roadgpt.traffic.actor import bodies
 from roadgpt.traffic.boxes import part_inside, touch
 
@@ -27,7 +28,7 @@ EYE = 1.2  # m, height of the driver's eye, which looks from the middle of the c
 SPACING = 5.0  # m between the places at which the height of the road is known
 BESIDE = 6.0  # m, within which the road lies under a line of sight
 FLAT = 0.002  # m, from the middle of three such places to the line between the others, twice: hides nobody
-_PLACES = [[*COLUMNS].index(name) for name in ("x", "y", "z", "heading", "speed", "s", "t")]
+X, Y, Z, HEADING, SPEED, S, T = map([*COLUMNS].index, ("x", "y", "z", "heading", "speed", "s", "t"))
 
 
 @compiled
@@ -38,9 +39,9 @@ def look_around(
     y, heading in (-pi, pi], speed, length and width of each, and 1.0 if it is a vehicle, else 0.0; returns
     how many they are and whether the car touches one.
 
-    ``states`` are as in Tracks, ``looks`` (n, 4) lengths, widths, whether they are vehicles, and from how
-    many metres they are seen, and ``car`` has the x, y and z of the middle of the car's box on the ground,
-    its heading, length and width. Roads that cross above each other do not count."""
+    ``states`` are as in Tracks, ``looks`` (n, 5) lengths, widths, heights, whether they are vehicles, and
+    from how many metres they are seen, and ``car`` has the x, y and z of the middle of the car's box on the
+    ground, its heading, length and width. Roads that cross above each other do not count."""
     x, y, z, heading, length, width = car
     far = np.empty(len(states))
     count, touches = 0, False
@@ -49,7 +50,7 @@ def look_around(
         far[k] = math.hypot(dx, dy)
         if abs(states[k, 2] - z) <= HEADROOM:
             touches = touches or touch(dx, dy, heading, length, width, states[k, 3], looks[k, 0], looks[k, 1])
-        if not far[k] <= looks[k, 3]:  # also who is not there
+        if not far[k] <= looks[k, 4]:  # also who is not there
             continue
         place = count
         while place > 0 and far[order[place - 1]] > far[k]:
@@ -61,7 +62,7 @@ def look_around(
         k = order[place]
         seen[place, 0], seen[place, 1], seen[place, 3] = states[k, 0], states[k, 1], states[k, 4]
         seen[place, 2] = math.atan2(math.sin(states[k, 3]), math.cos(states[k, 3]))
-        seen[place, 4:] = looks[k, :3]
+        seen[place, 4], seen[place, 5], seen[place, 6] = looks[k, 0], looks[k, 1], looks[k, 3]
     return count, touches
 
 
@@ -89,8 +90,8 @@ def in_sight(
     sees within ``reach`` metres, and returns how many they are.
 
     Somebody is seen if a line from the eye leads to the top of its box, at its middle or a corner, past all
-    other boxes and, for the middle, above the points (n, 3) of the road. ``sizes`` (n, 3) are lengths, widths
-    and heights."""
+    other boxes and, for the middle, above the points (n, 3) of the road. ``sizes`` are lengths, widths and
+    heights."""
     near, before, kept = order[:count].copy(), np.empty(count, np.int64), 0
     ways = np.empty((count, 4))  # distance, bearing and radius of a box, and half of the angle that it covers
     for place in range(count):
@@ -136,6 +137,31 @@ def in_sight(
     return kept
 
 
+@compiled
+def look(
+    before: FloatArray, after: FloatArray, share: float, looks: FloatArray, row: FloatArray,
+    box: FloatArray, road: FloatArray, states: FloatArray, order: "NDArray[np.int64]", seen: FloatArray,
+) -> tuple[int, bool]:  # fmt: skip
+    """Writes into ``states`` where the actors are, when a ``share`` of the time between two samples has
+    passed, and into ``order`` and ``seen`` those whom the driver sees; returns how many they are and whether
+    the car touches somebody.
+
+    ``row`` is the state of the car in the order of COLUMNS, and ``box`` has the length and width of its box,
+    the metres from its centre of gravity forward to the middle of the box, and upward from the ground;
+    ``road`` has points every SPACING metres, or none if it is flat."""
+    states[:] = before
+    if share > 0.0:
+        states[:] = (1.0 - share) * before + share * after
+    length, width, ahead, height = box
+    x, y = row[X] + ahead * math.cos(row[HEADING]), row[Y] + ahead * math.sin(row[HEADING])
+    car = np.array([x, y, row[Z] - height, row[HEADING], length, width])
+    count, touches = look_around(states, looks, car, order, seen)
+    here, far = int(row[S] / SPACING), int(SEEN / SPACING)
+    eye = np.array([x, y, row[Z] - height + EYE])
+    near = road[max(here - far, 0) : here + far]
+    return in_sight(states, looks, eye, near, order, seen, count, SEEN), touches
+
+
 class Company:
     """The others on the road during one drive."""
 
@@ -149,47 +175,45 @@ class Company:
         self.has_lights = bool(self._lines)
         """Whether traffic lights that run are on the way."""
         self._scene, self._samples = world.scene, 0
-        self._looks: list[tuple[float, ...]] = []
-        self._table, self._sizes = np.empty((0, 4)), np.empty((0, 3))
-        self._order, self._seen = np.empty(0, np.int64), np.empty((0, 7))
+        self._lights_reach = visual_range(world.scene, "lights")
+        self._kinds: list[str] = []
         line = road.at(np.arange(0.0, road.length, SPACING))
         is_hilly = np.abs(np.diff(line[:, 2], 2)).max(initial=0.0) > FLAT
-        self._heights = line if is_hilly else line[:0]
+        self._heights = np.ascontiguousarray(line if is_hilly else line[:0])
+        self._outline = np.array([box.length, box.width, box.ahead, box.height])
+        self._looks = none = np.empty((0, 5))
+        self._found = none, np.empty(0, np.int64), np.empty((0, 7))
+        given = (none, none, 0.0, none, np.empty(0), self._outline, self._heights, *self._found)
+        self._look = bound(look, given)
 
     def seen(self, row: FloatArray, time: float) -> Others:
         """Moves the others on to this time, tells the monitor whether the car touches one, and returns those
         that the driver sees. Call it at every control step; ``row`` is the state of the car in the order of
         COLUMNS."""
-        x, y, z, heading, speed, s, t = row[_PLACES].tolist()
-        box, c, sine = self._box, math.cos(heading), math.sin(heading)
-        x, y = x + box.ahead * c, y + box.ahead * sine
         if time >= self._samples * STEP - 1e-6:
-            self._traffic.advance(TestedCar(x, y, heading, speed, s, t, box.length, box.width))
-            self._samples += 1
-            new = self._traffic.actors[len(self._looks) :]
-            if new:
-                self._looks += [(*each.size[:2], each.kind in VEHICLES, self._reach(each)) for each in new]
-                self._table = np.array(self._looks, float)
-                self._sizes = np.vstack([self._sizes, *(each.size for each in new)])
-                count = len(self._looks)
-                self._order, self._seen = np.empty(count, np.int64), np.empty((count, 7))
-        states, actors = self._traffic.at(time), self._traffic.actors
-        car = np.array([x, y, z - box.height, heading, box.length, box.width])
-        count, touches = look_around(states, self._table, car, self._order, self._seen)
+            self._move_on(row)
+        given = (*self._traffic.around(time), self._looks, row, self._outline, self._heights, *self._found)
+        count, touches = self._look(*given)
         if touches:
             self._monitor.touch(time)
-        eye, here = np.array([x, y, z - box.height + EYE]), int(s / SPACING)
-        road = self._heights[max(here - int(SEEN / SPACING), 0) : here + int(SEEN / SPACING)]
-        count = in_sight(states, self._sizes, eye, road, self._order, self._seen, count, SEEN)
-        boxes = self._seen[:count].copy()
-        kinds = [actors[k].kind for k in self._order[:count].tolist()]
-        others = Others(map(Other._make, zip(kinds, *boxes.T[:6].tolist(), strict=True)))
+        _, order, seen = self._found
+        boxes, kinds = seen[:count].copy(), [self._kinds[k] for k in order[:count].tolist()]
+        said = zip(kinds, *boxes.T[:6].tolist(), strict=True)
+        others = Others(map(tuple.__new__, repeat(Other), said))  # faster than Other._make
         others.boxes = boxes
         return others
 
-    def _reach(self, actor: Actor) -> float:
-        """Returns from how many metres between their middles the driver sees an actor."""
-        return min(SEEN, visual_range(self._scene, actor.kind) + actor.size.length / 2)
+    def _move_on(self, row: FloatArray) -> None:
+        box, (x, y, heading, speed, s, t) = self._box, row[[X, Y, HEADING, SPEED, S, T]].tolist()
+        x, y = x + box.ahead * math.cos(heading), y + box.ahead * math.sin(heading)
+        self._traffic.advance(TestedCar(x, y, heading, speed, s, t, box.length, box.width))
+        self._samples += 1
+        if came := self._traffic.actors[len(self._kinds) :]:
+            self._kinds += [each.kind for each in came]
+            reach = [min(SEEN, visual_range(self._scene, each.kind) + each.size.length / 2) for each in came]
+            looks = [(*each.size, each.kind in VEHICLES, far) for each, far in zip(came, reach, strict=True)]
+            self._looks, count = np.vstack([self._looks, looks]), len(self._kinds)
+            self._found = np.empty((count, 5)), np.empty(count, np.int64), np.empty((count, 7))
 
     def bodies(self, time: float) -> "list[Body]":
         """Returns the bodies of the others at this time, for images."""
@@ -197,7 +221,7 @@ class Company:
 
     def lights(self, s: float, time: float) -> tuple[LightAhead, ...]:
         """Returns the lights ahead of station ``s`` of the route, and what they show at this time."""
-        shown, reach = self._traffic.lights, visual_range(self._scene, "lights")
+        shown, reach = self._traffic.lights, self._lights_reach
         if shown is None:
             return ()
         return tuple(

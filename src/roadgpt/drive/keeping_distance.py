@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from roadgpt.compiled import bound
 from roadgpt.drive.driving_line import BEFORE_LINE, FRONT, LEAST_BRAKE, DrivingLine, FloatArray, pedals_for
 from roadgpt.drive.view import Command, Others, View
 
@@ -49,6 +50,8 @@ class KeepingDistance:
             even = np.arange(0.0, self._along[-1], STEP)
             columns = [np.interp(even, self._along, each) for each in (line.x, line.y, line.heading)]
             self._path = np.column_stack(columns)
+            given = (self._path, 0.0, np.empty((0, 7)), FOLLOWS, FOLLOWS)
+            self._look = bound(look_ahead, given)
         first, share = line.place(view.s)
         before, after = self._along[first : first + 2].tolist()
         others = (view.others if isinstance(view.others, Others) else Others(view.others)).boxes
@@ -56,7 +59,7 @@ class KeepingDistance:
         if barriers:
             others = np.vstack([others, barriers])
         car = np.array([view.x, view.y, view.heading, view.speed, FRONT])
-        return look_ahead(self._path, before + share * (after - before), others, car, FOLLOWS)
+        return self._look(self._path, before + share * (after - before), others, car, FOLLOWS)
 
     def _barrier(self, s: float) -> tuple[float, ...]:
         """Returns what stands for a red light at a stop line: something across the path, so far behind the
@@ -93,7 +96,7 @@ class KeepingDistance:
 
             self._giving_way = self._giving_way or GivingWay(view.route, view.world, self._line)
             lines, least = self._giving_way.lines(view), self._giving_way.behind(view)
-        least = float(self.ahead(view, lines)[:, 2].min(initial=least))
+        least = min([least, *self.ahead(view, lines)[:, 2].tolist()])
         return slowed(self._line, view, command, max(least, -HARDEST))
 
 

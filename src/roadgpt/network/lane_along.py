@@ -144,7 +144,7 @@ def legs_along(
         for n, (each, lanes) in enumerate(zip(ways, fit[1:], strict=True))
     ]
     profile, shift = network.road(roads[0]).profile, shifts.get(roads[0], 0)
-    lane = max(ways[0], key=abs) if ways else profile.side
+    lane = max(ways[0], key=abs) if ways else profile.along_ids[-1]
     if first is not None and abs(first) <= len(profile.along_ids):
         lane = profile.along_ids[-first if first > 0 else -1 - first]
     lane += -shift if profile.leads_along(lane) else shift

@@ -7,6 +7,7 @@ greatest speed that its action says."""
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -69,8 +70,10 @@ class Car(NamedTuple):
     width: float
 
 
-class Deed(NamedTuple):
-    """An action, and the numbers that were drawn for it, in metres, seconds and shares."""
+@dataclass(frozen=True, eq=False)
+class Deed:
+    """An action, and the numbers that were drawn for it, in metres, seconds and shares. Two of them are never
+    equal: a second swerve is another one."""
 
     action: Action
     n: dict[str, float]
@@ -725,4 +728,4 @@ class Act:
             return
         self.t = self.slide.begin + self.slide.by * (1 - math.cos(math.pi * share)) / 2
         aside = math.copysign(self.slide.peak, self.slide.by) * math.sin(math.pi * share)
-        self.slope = aside / max(abs(self.v), SHARPEST * self.slide.peak)
+        self.slope = aside / max(abs(self.v), SHARPEST * self.slide.peak, 1e-9)

@@ -22,6 +22,8 @@ X, Y, Z, HEADING, SPEED = range(5)
 """The columns of a state: the middle of the actor's box on the ground in metres, its heading in radians, and
 its speed along its heading in m/s, negative when it reverses."""
 
+PER_UNIT = np.array([1e3, 1e3, 1e3, 1e4, 1e3])  # to these numbers in a m, m, m, rad, m/s states are rounded
+
 
 class Size(NamedTuple):
     """The box of an actor in metres."""
@@ -117,9 +119,7 @@ def bodies(actors: Sequence[Actor], states: FloatArray) -> "list[Body]":
 
 def rounded(states: FloatArray) -> FloatArray:
     """Returns states as Tracks hold them."""
-    out = np.round(states, 3)
-    out[..., HEADING] = np.round(states[..., HEADING], 4)
-    return out + 0.0
+    return np.asarray(np.rint(states * PER_UNIT) / PER_UNIT + 0.0)
 
 
 def corners(state: FloatArray, size: Size) -> FloatArray:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roadgpt.brief.scene import FLOWS, ActorKind, Flow
+from roadgpt.compiled import bound
 from roadgpt.network import legs_of, network_of
 from roadgpt.network.lanes import Lanes, lanes_of
 from roadgpt.network.network import Leg, Network, RoadEnd
@@ -88,7 +89,7 @@ class IdmMover:
         self._begin_density = self._density[list(self._waits)]
         is_road = self.lanes.junction < 0  # ways through a junction lie over each other
         self._wanted = float((self._density * self.lanes.length)[is_road].sum())
-        self._tick = 0
+        self._tick, self._step = 0, f.step
         self._goes_on = np.diff(self.lanes.onward_of) > 0
 
     def start(self, car: "TestedCar | None") -> FloatArray:
@@ -122,7 +123,10 @@ class IdmMover:
             self.lanes, self._numbers[:n], self._whole[:n], self._ways[:n], self._states[:n], self._entries,
             lights,
         )  # fmt: skip
-        f.step(crowd, bodies, self._room, self._tick)
+        given = (crowd, bodies, self._room, self._tick)
+        if not self._tick:
+            self._step = bound(f.step, given)
+        self._step(*given)
         self._tick += 1
         if self.comes_in:
             self._let_in()
