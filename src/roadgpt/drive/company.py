@@ -200,10 +200,7 @@ class Company:
         shown, reach = self._traffic.lights, visual_range(self._scene, "lights")
         if shown is None:
             return ()
+        near = [(line - s, end) for line, end in self._lines if 0 <= line - s <= reach]
         return tuple(
-            [
-                LightAhead(line - s, ("green", "yellow", "red")[shown.shown(end, time)])
-                for line, end in self._lines
-                if 0 <= line - s <= reach
-            ]
+            [LightAhead(far, ("green", "yellow", "red")[shown.shown(end, time)]) for far, end in near]
         )

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -121,10 +122,14 @@ def judge(
     outcome: Outcome = "FAIL" if cause else "PASS"
     avoided_by, avoided = None, ""
     if cause == "collision" and contact is not None:
-        from roadgpt.verdict.avoidable import avoidance_of
+        from roadgpt.verdict.avoidable import OWN_DOING, avoidance_of
 
         is_avoidable, avoided_by, avoided = avoidance_of(road, drive, world, contact)
         outcome = "FAIL" if is_avoidable else "UNAVOIDABLE"
+        if contact.contact is not None and avoided.startswith(OWN_DOING):
+            own = replace(contact, contact=replace(contact.contact, at_fault=True))
+            incidents = tuple(own if each is contact else each for each in incidents or ())
+            contact = own
     if cause is None:
         description = _kept(drive, world, least, beyond, behind)
     else:
