@@ -47,11 +47,11 @@ SCENE = "truck ahead gap=30 v=50: brake decel=6; fog 60"
 
 
 @pytest.fixture(scope="module")
-def among_others(tmp_path_factory: pytest.TempPathFactory) -> str:
-    out = str(tmp_path_factory.mktemp("among"))
-    words = ["run", "--plan", "--no-plot", "--out", out, f"straight 60; turn right 40 r60 && {SCENE}"]
-    assert CliRunner().invoke(app, words).exit_code == 0
-    return f"{out}/1"
+def among_others(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    here = tmp_path_factory.mktemp("among")
+    out, plan = str(here / "out"), f"straight 60; turn right 40 r60 && {SCENE}"
+    assert CliRunner().invoke(app, ["run", "--plan", "--no-plot", "--out", out, plan]).exit_code == 0
+    return here
 
 
 @pytest.mark.parametrize(
@@ -59,15 +59,13 @@ def among_others(tmp_path_factory: pytest.TempPathFactory) -> str:
     [
         *((f"export --to {name}", f"{name}: {OTHERS} left out") for name in ("csv", "gltf", "geojson")),
         ("export --to openscenario", None),
-        ("drive --out again", f"the scene of the run is left out; give it with --scene '{SCENE}'"),
-        ("drive --out again --scene none", None),
     ],
 )
 def test_who_is_left_out_is_told(
-    command: str, told: str | None, among_others: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    command: str, told: str | None, among_others: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.chdir(tmp_path)
-    result = CliRunner().invoke(app, [*command.split(), among_others])
+    monkeypatch.chdir(among_others)
+    result = CliRunner().invoke(app, [*command.split(), "out/1"])
     assert result.exit_code == 0, result.output
     said = result.stderr.replace("\n", " ")
     assert "left out" not in said if told is None else told in said

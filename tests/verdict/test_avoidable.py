@@ -13,6 +13,7 @@ from roadgpt.cli.junit import write_junit
 from roadgpt.cli.screen import Row
 from roadgpt.drive import Columns, Drive
 from roadgpt.road import Limits, Road, World
+from roadgpt.run import Setup, perform
 from roadgpt.traffic import Tracks
 from roadgpt.verdict import Verdict, judge
 from roadgpt.verdict.careful import CAREFUL, DRIVERS, Moment, drive_on, stopping_distance
@@ -191,6 +192,9 @@ def test_who_brakes_for_nothing_and_is_hit_from_behind() -> None:
         (6.0, {"van_1": ("van", straight(180, LANE, 0, 0))}, 60.0, False),
         (6.0, {"van_1": ("van", straight(180, -LANE, 0, 0))}, 60.0, True),  # in the other lane
         (6.0, {"van_1": ("van", straight(260, LANE, 0, 15))}, 60.0, True),  # far ahead
+        (6.0, {"van_1": ("van", straight(140, LANE, 0, 15))}, 60.0, True),  # 2 s ahead, and as fast
+        (6.0, {"van_1": ("van", straight(117, LANE, 0, 15))}, 60.0, False),  # less than a second ahead
+        (6.0, {"van_1": ("van", brakes(6.0, 140.0))}, 60.0, False),  # brakes, too
         (6.0, {"adult_1": ("adult", straight(165, -8, np.pi / 2, 1.5))}, 60.0, False),  # walks into the way
         (6.0, {"adult_1": ("adult", straight(165, -8, np.pi / 2, 0.0))}, 60.0, True),  # stands beside it
         (6.0, {}, 10.0, False),
@@ -199,11 +203,29 @@ def test_who_brakes_for_nothing_and_is_hit_from_behind() -> None:
         assert found.first_contact is not None
         assert (found.outcome, found.first_contact.face) == ("FAIL" if avoidable else "UNAVOIDABLE", "rear")
         told = f"avoidable: it had braked with {rate:.1f} m/s2 and nothing in its way called for it"
-        assert found.description.endswith(told) == avoidable, (rate, more, limit)
+        assert found.description.endswith(f"; at fault; {told}") == avoidable, (rate, more, limit)
+        assert found.first_contact.at_fault == avoidable
     faster = scene(brakes(6.0), car_1=("car", straight(71, LANE, 0, 18)))  # would have come anyway
     assert verdict(faster).outcome == "UNAVOIDABLE"
     drive = among(driven(brakes(6.0), 8.0, bend), tracks(8.0, **follows))
     assert verdict(drive, road=bend).outcome == "UNAVOIDABLE"
+
+
+@pytest.mark.parametrize("control", ["priority", "yield", "stop", "lights"])
+def test_braking_before_a_junction_is_for_something_if_one_gives_way_there(control: str) -> None:
+    world = World(limits=Limits(speed_limit=60.0))
+    plan = f"straight 180 // crossroads straight {control} // straight 80"
+    road = perform(plan, 1, world, Setup(reader="plan", drives=False)).road
+    assert road is not None
+    s = np.linspace(0.0, 170.0, 681)
+    (x, y, _), heading = road.at(s, LANE).T, road.heading(s)
+
+    def along(motion: Any) -> Any:
+        return lambda time: tuple(np.interp(motion(time)[0], s, each) for each in (x, y, heading))
+
+    others = tracks(6.0, car_1=("car", along(straight(75, LANE, 0, 15))))
+    drive = among(driven(along(brakes(6.0, 95.0)), 6.0, road), others)
+    assert judge(road, drive, world).failed == (control == "priority")
 
 
 def test_a_cut_in_is_perceived_before_it_reaches_the_strip() -> None:

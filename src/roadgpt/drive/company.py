@@ -224,10 +224,7 @@ class Company:
         shown, reach = self._traffic.lights, self._lights_reach
         if shown is None:
             return ()
+        near = [(line - s, end) for line, end in self._lines if 0 <= line - s <= reach]
         return tuple(
-            [
-                LightAhead(line - s, ("green", "yellow", "red")[shown.shown(end, time)])
-                for line, end in self._lines
-                if 0 <= line - s <= reach
-            ]
+            [LightAhead(far, ("green", "yellow", "red")[shown.shown(end, time)]) for far, end in near]
         )

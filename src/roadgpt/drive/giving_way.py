@@ -101,11 +101,9 @@ class GivingWay:
         if self._junctions and must < (line := self._junctions[0][0]) < front + far:
             self._waited += view.dt if view.speed < STANDING and line < front + 5.0 else 0.0
             _, top, ways = self._junctions[0]
-            rows = self._vehicles(view)
-            margin = 0.0 if self._goes else MARGIN
-            limit = view.world.limits.speed_limit
+            margin, limit = 0.0 if self._goes else MARGIN, view.world.limits.speed_limit
             car = np.array([front, line - front, view.speed, top, self._waited, margin, limit])
-            self._goes = not _is_awaited(ways, rows, car)
+            self._goes = not _is_awaited(ways, self._vehicles(view), car)
             found += [] if self._goes else [line - view.s]
         if self._crosswalks and must < (line := self._crosswalks[0][0]) < front + far:
             persons = [each for each in view.others if each.kind in ("adult", "child")]

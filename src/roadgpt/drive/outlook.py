@@ -41,13 +41,11 @@ class Outlook:
         if self._plain is not None:
             return self._plain
         first = bisect_right(self._ends, s)
-        ahead = tuple(
-            [
-                JunctionAhead(max(start - s, 0.0), *seen, end - max(start, s))
-                for start, end, seen in self._junctions[first:]
-            ]
-        )
-        return self._route, ahead, *self._beside[max(bisect_right(self._starts, s) - 1, 0)]
+        ahead = [
+            JunctionAhead(max(start - s, 0.0), *seen, end - max(start, s))
+            for start, end, seen in self._junctions[first:]
+        ]
+        return self._route, tuple(ahead), *self._beside[max(bisect_right(self._starts, s) - 1, 0)]
 
     def signs(self, s: float) -> tuple[SignAhead, ...]:
         """Returns ``signs`` of a View at station ``s``."""

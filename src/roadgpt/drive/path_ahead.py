@@ -86,9 +86,8 @@ def look_ahead(
         half, crosses = HALF_WIDTH + SPARE, abs(math.cos(turn)) < ALONG
         if hit >= 0:
             gap = hit * STEP - start - front
-            ahead = (other[X] - car[X]) * math.cos(car[HEADING]) + (other[Y] - car[Y]) * math.sin(
-                car[HEADING]
-            )
+            to_x, to_y = other[X] - car[X], other[Y] - car[Y]
+            ahead = to_x * math.cos(car[HEADING]) + to_y * math.sin(car[HEADING])
             if gap <= 0.0 and ahead <= 0.0:
                 continue  # it is beside the car or behind it
             leaves = half + wide - aside * (1.0 if across > 0.0 else -1.0)
@@ -100,12 +99,9 @@ def look_ahead(
             left = abs(aside) - wide - half
             if gap <= 0.0 or gap > HORIZON or closing < 0.1:
                 continue
-            if other[IS_VEHICLE] == 0.0:
-                soon = WALKS * closing
-            else:
-                soon = MOVES_OVER * closing
-                if crosses:
-                    soon = max(CROSSES * closing, closing * closing / (2.0 * STOPS))
+            soon = (WALKS if other[IS_VEHICLE] == 0.0 else MOVES_OVER) * closing
+            if crosses and other[IS_VEHICLE] != 0.0:
+                soon = max(CROSSES * closing, closing * closing / (2.0 * STOPS))
             if left > soon:
                 continue
             if crosses:

@@ -21,6 +21,8 @@ from numpy.typing import NDArray
 from roadgpt.brief.scene import VEHICLES
 from roadgpt.brief.visibility import visual_range, weather_drawn
 from roadgpt.drive.company import EYE, SPACING, in_sight
+from roadgpt.network import legs_of, network_of
+from roadgpt.network.lanes import lanes_of
 from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y
 from roadgpt.traffic.following import AFTER_CONTACT
 from roadgpt.verdict.careful import CAREFUL, DRIVERS, Driver, Moment, drive_on, stopping_distance
@@ -46,7 +48,9 @@ KEPT = 2.0  # s
 COMFORT, OVER, RECENT, SIDEWAYS = 3.5, 0.5, 3.0, 2.0
 """ISO 15622: m/s^2, the hardest braking of cruise control; ours: the seconds over which it is measured, the
 seconds before the contact in which it counts, and the m/s^2 sideways above which a bend calls for it."""
-SOON = 4.0  # s, of a conflict time below which somebody calls for braking
+SOON, CLOSE, CALLS = 4.0, 1.0, 1.5
+"""Somebody calls for braking with a conflict time or time headway of fewer s, or if m/s^2 are required."""
+OWN_DOING = "avoidable: it"
 FRONTS = np.array(
     [[2.0, 2.0, 2.4, 3.33, 5.56, 8.33, 11.11, 13.89, 16.67], [1, 1, 1, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6]]
 )
@@ -69,7 +73,7 @@ def avoidance_of(
     else:
         said = "no reference driver (careful driver, Reg157, FSM, RSS) could have avoided it"
     if own := meeting.own_doing() or _braked_for_nothing(road, drive, world, collision):
-        return True, by, f"avoidable: it {own}" + f"; {said}" * bool(by)
+        return True, by, f"{OWN_DOING} {own}" + f"; {said}" * bool(by)
     return bool(by), by, said
 
 
@@ -86,16 +90,19 @@ def _braked_for_nothing(road: "Road", drive: "Drive", world: "World", collision:
     if hit.face != "rear" or not len(hard):
         return ""
     since, before = time[hard[0]] - OVER, earlier[hard[0]]
-    way, s = before**2 / (2 * COMFORT) + before, float(np.interp(since, drive["time"], drive["s"]))
-    ahead = np.linspace(s, min(s + way, road.length), int(way / ALONG) + 2)
+    far, s = before**2 / (2 * COMFORT) + before, float(np.interp(since, drive["time"], drive["s"]))
+    ahead = np.linspace(s, min(s + far, road.length), int(far / ALONG) + 2)
     others = [each.name != collision.other for each in drive.others.actors]
-    meets = ((measured.gap < way) | (measured.conflict < SOON))[:, others]
+    needs = (measured.deceleration > CALLS) | (measured.conflict < SOON) | (measured.headway < CLOSE)
+    lanes, legs = lanes_of(network_of(road, world)), legs_of(road, world)
+    near = [leg for leg, at in zip(legs, road.starts, strict=False) if s < at < ahead[-1]]
     is_called = (
         hit.other_speed > before + OVER_BY
-        or meets[(time >= since - 1.0) & (time <= end)].any()
+        or needs[(time >= since - 1.0) & (time <= end)][:, others].any()
         or before > limits_at(road, world, ahead).min() + OVER_BY
         or before**2 * np.abs(road.curvature(ahead)).max() > SIDEWAYS
-        or any(each.start < ahead[-1] and each.end > s for each in road.passages)
+        or any(lanes.gives_way_to(leg) for leg in near)
+        or any(s < way.line < ahead[-1] and way.control in ("stop", "lights") for way in road.passages)
     )
     most = braking[hard].max()
     return "" if is_called else f"had braked with {most:.1f} m/s2 and nothing in its way called for it"

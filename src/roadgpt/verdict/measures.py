@@ -290,9 +290,7 @@ def _distance(
         (away, own, other, half, halves),
         (-away, other, own, halves, half),
     ):
-        corners = place[:, None] + turned(
-            OUTLINE * sizes[:, None], its[:, None]
-        )  # of the one, seen from the other
+        corners = place[:, None] + turned(OUTLINE * sizes[:, None], its[:, None])
         beyond = np.maximum(np.abs(turned(corners, -mine[:, None])) - size[:, None], 0.0)
         least = np.minimum(least, np.hypot(beyond[..., 0], beyond[..., 1]).min(axis=1))
     apart = separation(away, own, other, half, halves).max(axis=-1)

@@ -30,21 +30,10 @@ SEVERITIES: tuple[Severity, ...] = get_args(Severity)
 PARTLY, MOSTLY = 0.1, 0.5
 """Shares of the car's bounding box outside its lane above which the level is "partly" or "mostly outside"."""
 STANDS = 0.05  # m/s, up to which nuPlan takes somebody for standing
-
-
 IncidentKind = Literal[
-    "out of lane",
-    "wrong turn",
-    "wrong way",
-    "off road",
-    "stop line",
-    "red light",
-    "failure to yield",
-    "collision",
-    "near miss",
-    "blocked",
-    "speeding",
-]
+    "out of lane", "wrong turn", "wrong way", "off road", "stop line", "red light", "failure to yield",
+    "collision", "near miss", "blocked", "speeding",
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -67,7 +56,8 @@ class Contact:
     """Share of the tested car's width, 0 to 1, that lay before the other; None if its front was not
     touched."""
     at_fault: bool
-    """Whether it is the tested car's fault, as ``roadgpt.verdict.contact`` defines it."""
+    """Whether it is the tested car's fault: as ``roadgpt.verdict.contact`` defines it, or because it brought
+    the collision about itself (``roadgpt.verdict.avoidable``)."""
 
 
 @dataclass(frozen=True)

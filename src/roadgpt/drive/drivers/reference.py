@@ -13,8 +13,6 @@ from roadgpt.road.speed_profile import GRAVITY, DrivingLimits, plan_speed
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
-TURN = 2 * math.pi
-
 
 @dataclass(eq=False)
 class Reference:
@@ -76,7 +74,7 @@ class Reference:
         i, share = line.place(view.s)
         error = view.t - line.offset[i] - share * (line.offset[i + 1] - line.offset[i])
         heading = line.heading[i] + share * (line.heading[i + 1] - line.heading[i])
-        turned = math.remainder(view.heading - heading, TURN)
+        turned = math.remainder(view.heading - heading, math.tau)
         j, share = line.place(view.s + self.lag * v)
         bend = curvature[j] + share * (curvature[j + 1] - curvature[j])
         # A road that falls to the right needs force to the left, as a bend to the left does.
