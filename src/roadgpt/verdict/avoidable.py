@@ -201,7 +201,7 @@ class _Meeting:
         sizes, count = np.array([each.size for each in actors]), len(order)
         eye = self.way.at(np.array(self._eye(time))) + [0.0, 0.0, EYE]
         every = round(SPACING / ALONG)
-        ground = np.column_stack([self.way.middle[::every], self.way.z[::every]])  # in one piece, as in drives
+        ground = np.column_stack([self.way.middle[::every], self.way.z[::every]])  # contiguous, as in drives
         found = in_sight(
             states, sizes, eye, ground, order, np.empty((count, 4)), count, reach + sizes[number, 0] / 2
         )
