@@ -55,12 +55,14 @@ demo: $(VENV)/.installed
 	@echo "Now call it with: $(BIN)/roadgpt run \"a winding road downhill\" -n 5"
 	@echo "or once 'source $(BIN)/activate', then everywhere: roadgpt run ..."
 
-# The simulator is compiled once, beside the check of types; each worker and each process of a test would compile anew.
+# The simulator and the camera are compiled once, beside the check of types; each worker and process would compile anew.
 test: export PYTHONDONTWRITEBYTECODE =
 test: $(VENV)/.installed-test judges/.installed
 	$(BIN)/python -m ruff check .
 	$(BIN)/python -m ruff format --check .
-	$(BIN)/python -m roadgpt run "a road" --scene light --seed 1 --out "$$(mktemp -d)/compiled" > /dev/null & \
+	{ $(BIN)/python -m roadgpt run "a road" --scene light --seed 1 --out "$$(mktemp -d)/compiled" && \
+	  $(BIN)/python -m roadgpt run "a straight road of 25 m" --no-plot --out "$$(mktemp -d)/seen" \
+	    --driver examples/vision/small_network.py:SmallNetwork; } > /dev/null & \
 	  $(BIN)/python -m mypy && wait $$!
 	$(BIN)/python -m pytest -n 3 --dist worksteal
 	@echo "make test: $(SECONDS_SO_FAR) s"

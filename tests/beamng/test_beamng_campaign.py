@@ -140,7 +140,7 @@ def test_a_campaign_of_workers_gives_up_and_resumes(
     """A worker's BeamNG has the next port and user folder where another process has taken the first."""
     monkeypatch.setenv("ROADGPT_BEAMNG_PORT", str(port))
     monkeypatch.setenv("ROADGPT_BEAMNG_RATE", "20")
-    budget = CellBudget(tests=4)
+    budget = CellBudget(tests=3)
     plan = Plan(prompts=(SHORTEST,), reader="plan", simulators=("beamng",), budget=budget, seeds=(5,))
     begin(plan, tmp_path / "c")
     with pytest.raises(GivenUpError, match=r"nobody listens on .*fix it and continue$"):
@@ -156,8 +156,8 @@ def test_a_campaign_of_workers_gives_up_and_resumes(
     ours = take(BeamngSettings.of())
     *_, last = work(tmp_path / "c", 1)
     ours.release()
-    assert last["PASS"] >= 3
-    assert last.total() == 4
+    assert last["PASS"] >= 2
+    assert last.total() == 3
     words = json.loads((home / "started.jsonl").read_text().splitlines()[0])["words"]
     assert words[words.index("-tport") + 1] == str(ours.port + 1)
     assert words[words.index("-userpath") + 1] == f"{user}-2"

@@ -107,7 +107,7 @@ def test_damaged_weights_are_refused_in_a_sentence(tmp_path: Path, name: str) ->
 
 def test_sentences_of_usual_briefs_are_read_back() -> None:
     missed = []
-    plans = [pair.plan for pair in islice(pairs(2026), 30) if not pair.plan.startswith("!")]
+    plans = [pair.plan for pair in islice(pairs(2026), 15) if not pair.plan.startswith("!")]
     for line in plans:
         wanted = normal(read_plan(line))
         try:
@@ -122,7 +122,7 @@ def test_sentences_of_usual_briefs_are_read_back() -> None:
 
 def test_most_descriptions_are_read_as_they_are_meant() -> None:
     """Their plans were written by hand for rules; where the guide of labels decides otherwise, they miss."""
-    lines = Path(__file__).with_name("descriptions.jsonl").read_text("utf-8").splitlines()[::8]
+    lines = Path(__file__).with_name("descriptions.jsonl").read_text("utf-8").splitlines()[::16]
     missed = []
     for case in map(json.loads, lines):
         expected = read_plan(case["plan"])

@@ -6,12 +6,14 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from roadgpt import children
 from roadgpt.campaign.executors import Shared, WorkerConfig
-from roadgpt.campaign.executors.processes import Process, Processes
 from roadgpt.errors import UsageError
+
+if TYPE_CHECKING:  # workers, which read this file, need none of it
+    from roadgpt.campaign.executors.processes import Processes
 
 TESTS = Path(__file__).resolve().parents[1]
 
@@ -105,7 +107,7 @@ def dies(status: int) -> None:
 
 
 def eats(megabytes: int) -> int:
-    eaten = [bytes(1_000_000).replace(b"\0", b"x") for _ in range(megabytes)]
+    eaten = [b"x" * 1_000_000 for _ in range(megabytes)]
     time.sleep(300)
     return len(eaten)
 
@@ -124,13 +126,17 @@ def is_alive(pid: int) -> bool:
     return state != "Z"
 
 
-def at_work(workers: Processes) -> list[int]:
+def at_work(workers: "Processes") -> list[int]:
     """The processes that are at work on a job."""
+    from roadgpt.campaign.executors.processes import Process
+
     busy = [each for each in workers._workers if each.is_ready and each.is_busy]
     return [each.process.pid for each in busy if isinstance(each, Process)]
 
 
 def main() -> None:
+    from roadgpt.campaign.executors.processes import Processes
+
     workers = Processes(WorkerConfig(2, nothing, 1000.0, Path(os.devnull)))
     for _ in range(2):
         workers.submit(sleeps, 1000.0)

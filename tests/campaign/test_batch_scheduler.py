@@ -42,7 +42,7 @@ def worked(folder: Path, workers: int = 1, order: int = 0, **rest: Any) -> bytes
     return (folder / "results.csv").read_bytes()
 
 
-@settings(max_examples=10)
+@settings(max_examples=6)
 @given(
     order=st.integers(0, 10**6),
     workers=st.integers(1, 9),

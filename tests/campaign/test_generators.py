@@ -97,8 +97,8 @@ def known(name: str, words: str, goal: Goal, batches: int) -> tuple[list[Result]
 @pytest.mark.parametrize("name", SEARCHES)
 def test_the_same_seed_asks_for_the_same_and_another_for_something_else(name: str) -> None:
     _, one = known(name, UPHILL, "failures", 5)
-    _, again = searched(cell_for(name), 4, Backwards())
-    assert one[:4] == again
+    _, again = searched(cell_for(name), 3, Backwards())
+    assert one[:3] == again
     _, other = searched(cell_for(name, seed=2), 1)
     designs = [[proposal.design for proposal in batch] for batch in (*one, *other)]
     assert all(this != that for this, that in combinations(designs, 2))
@@ -108,7 +108,7 @@ def test_the_same_seed_asks_for_the_same_and_another_for_something_else(name: st
 @pytest.mark.parametrize(
     ("name", "goal"),
     [("random", "failures"), ("genetic", "hardest")]
-    + [("quality_diversity", goal) for goal in ("failures", "coverage", "boundary")],
+    + [("quality_diversity", goal) for goal in ("failures", "boundary")],
 )
 def test_told_again_it_goes_on_as_if_nothing_had_happened(name: str, goal: Goal) -> None:
     """What the campaign does after a crash: a new generator hears the old results, and was never asked."""

@@ -76,7 +76,7 @@ def test_a_campaign_on_an_imported_map_is_resumed_without_its_source(
     rows = table(whole)
     assert [row["origin"] for row in rows] == ["route-1.json", "route-2.json", "route-3.json"] * 2
     assert len({row["seed"] for row in rows}) == 3
-    for row in rows:
+    for row in rows[::2]:  # both drivers, and every road once
         found, driver = read_source(routes / row["origin"]), DRIVERS[row["cell"] == "c02"]
         world = World().changed(**found.world)
         run = prove(found.blueprint, int(row["seed"]), world, Setup(driver=driver), despite_findings=True)

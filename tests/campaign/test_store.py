@@ -65,7 +65,7 @@ def a_store(folder: Path) -> Store:
     return Store.new(folder, made.model_dump_json(), made.cells(BRIEFS), {"any": {"python": "3"}})
 
 
-@settings(max_examples=15)
+@settings(max_examples=8)
 @given(st.data())
 def test_results_cells_and_proposals_come_out_as_they_went_in(data: st.DataObject) -> None:
     asked = data.draw(st.lists(proposals(), min_size=1, max_size=4))

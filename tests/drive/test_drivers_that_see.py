@@ -88,7 +88,7 @@ def test_the_lane_is_found_in_a_picture(
 
 @pytest.fixture(scope="module")
 def drives() -> Callable[[str], Drive]:
-    road = road_of((25.0, 0.0, 0.0), (30.0, 50.0, 3.0), (15.0, 0.0, 0.0))
+    road = road_of((14.0, 0.0, 0.0), (24.0, 45.0, 3.0), (10.0, 0.0, 0.0))
     kept: dict[str, Drive] = {}
 
     def drive(spec: str) -> Drive:

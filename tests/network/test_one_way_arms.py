@@ -18,7 +18,7 @@ from roadgpt.road.design import USUAL_ARMS
 
 STRAIGHT = {"distance": 60, "direction": "straight", "incline": 0, "turn_degrees": 0}
 ONE_WAY = {"forward": 1, "backward": 0}
-settled = settings(max_examples=100, deadline=None)
+settled = settings(max_examples=50, deadline=None)
 
 
 def route_of(data: dict[str, Any]) -> Route:

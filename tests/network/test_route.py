@@ -31,11 +31,13 @@ def drawn(seed: int) -> Route:
     return build_route(read_design(random_design(seed))[0], World())
 
 
-def routes() -> list[Route]:
-    return [*(drawn(seed) for seed in range(12)), built(design(60.0, BACK)), passing("roundabout", 1)]
+@pytest.fixture(scope="module", params=[*range(6), "back", "first exit"])
+def route(request: pytest.FixtureRequest) -> Route:
+    if isinstance(request.param, int):
+        return drawn(request.param)
+    return built(design(60.0, BACK)) if request.param == "back" else passing("roundabout", 1)
 
 
-@pytest.mark.parametrize("route", routes(), ids=repr)
 def test_a_route_is_its_legs_one_after_another(route: Route) -> None:
     lengths = [route.network.road(leg.road).road.length for leg in route.legs]
     assert route.length == pytest.approx(math.fsum(lengths), abs=1e-9)
@@ -54,7 +56,6 @@ def test_a_route_is_its_legs_one_after_another(route: Route) -> None:
         assert route.grade(start + u) == pytest.approx(sign * road.grade(own), abs=1e-6)
 
 
-@pytest.mark.parametrize("route", routes(), ids=repr)
 def test_the_lane_of_a_route_is_the_lane_of_its_legs(route: Route) -> None:
     assert route.profile is not None
     for start, leg in zip(route.starts, route.legs, strict=False):
@@ -147,7 +148,7 @@ def test_a_single_road_is_a_network_of_one_road_that_is_driven_from_end_to_end(
     assert road.has_way
     assert road.passages == ()
     assert road.starts == (0.0, road.length)
-    assert only_road(routes()[0], world) is None
+    assert only_road(drawn(0), world) is None
 
 
 class TestRefusals:

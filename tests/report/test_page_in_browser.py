@@ -35,7 +35,7 @@ def opened(page: BrowserTab, path: Path) -> None:
         time.sleep(0.02)
 
 
-def test_it_fits_every_screen_in_both_schemes(report: Path) -> None:
+def test_it_fits_every_screen_in_both_schemes_and_prints(report: Path) -> None:
     with browser() as page:
         shades = set()
         for wide, high, is_phone in SIDES:
@@ -54,11 +54,6 @@ def test_it_fits_every_screen_in_both_schemes(report: Path) -> None:
         assert len(shades) == 2
         assert page.told == []
         assert {url.split(":")[0] for url in page.asked} <= {"file", "about", "data"}
-
-
-def test_it_prints(report: Path) -> None:
-    with browser() as page:
-        opened(page, report)
         page.send("Emulation.setEmulatedMedia", media="print")
         assert page.run("getComputedStyle(document.querySelector('nav')).display") == "none"
         assert page.send("Page.printToPDF")["data"]

@@ -38,11 +38,8 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     result = CliRunner().invoke(app, ["compare", "a.json", "b.json"])
     assert result.exit_code == 0, result.output
     assert "number of turns" in result.output
-    first = Path("compared.png").read_bytes()
-    assert first[:4] == b"\x89PNG"
+    assert Path("compared.png").read_bytes()[:4] == b"\x89PNG"
     again = CliRunner().invoke(app, ["compare", "a.json", "a.json", "--json", "--out", "pictures/same.png"])
     assert json.loads(again.stdout)["duplicate"] is True
     wrong = CliRunner().invoke(app, ["compare", "a.json", "none.json"])
     assert wrong.exit_code == 2
-    CliRunner().invoke(app, ["compare", "a.json", "b.json", "--out", "twice.png"])
-    assert Path("twice.png").read_bytes() == first

@@ -97,14 +97,14 @@ def test_for_the_competition_a_sketch_has_the_curvature_of_the_spline() -> None:
 def test_the_steering_of_a_sketch_is_nearly_that_of_the_drive() -> None:
     """In proportion, on roads that the car drives to their end, and whose curvature often changes at once."""
     found = []
-    for seed in range(24):
+    for seed in range(15):
         one = sketched(PLANS[0], "wild", seed)
         made = candidate_of((one, setting(PLANS[0]))) if one else None
         if one and made:
             run = prove(build(made.design), 0, WORLD)
             if run.outcome == "PASS":
                 found.append((one.surrogate_features[STEERING[0]], steering(run.road, run.drive)))
-    assert len(found) >= 8
+    assert len(found) >= 6
     assert np.corrcoef(np.array(found).T)[0, 1] > 0.7
 
 

@@ -88,7 +88,7 @@ def test_nobody_touches_anybody(plan):
     mover = IdmMover(stage(plan), "medium")
     states = mover.start(None)
     assert mover.vehicles > 2
-    for tick in range(900):
+    for tick in range(500):
         states = mover.move(tick * STEP, None, NOBODY)
         if tick % 2:  # who comes at 40 m/s is still there 0.1 s later
             assert not overlapping(mover, states)
@@ -99,7 +99,7 @@ def test_nobody_jumps(plan):
     """From moment to moment everybody comes as far as it drives, also where it changes lanes in a bend."""
     mover = IdmMover(stage(plan), "dense")
     before, turned = mover.start(None), 0.0
-    for tick in range(900):
+    for tick in range(500):
         after = mover.move(tick * STEP, None, NOBODY)
         own = slice(0, len(before))
         way = np.hypot(*(after[own] - before)[:, [X, Y]].T)
@@ -127,7 +127,7 @@ def test_the_density_is_held(flow):
     mover.start(None)
     metres = mover.lanes.length.sum()
     counts = []
-    for tick in range(3000):
+    for tick in range(1500):
         mover.move(tick * STEP, None, NOBODY)
         counts.append(mover.vehicles)
     assert np.mean(counts) / metres * 1000 == pytest.approx(DENSITY[flow] * 1000, rel=0.2)

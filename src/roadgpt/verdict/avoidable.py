@@ -207,7 +207,7 @@ class _Encounter:
         order = np.flatnonzero(~np.isnan(states[:, X]))
         sizes, count = np.array([each.size for each in actors]), len(order)
         eye = self.way.at(np.array(self._eye(time))) + [0.0, 0.0, EYE]
-        ground = np.column_stack([self.way.middle, self.way.z])[:: round(SPACING / ALONG)]
+        ground = np.column_stack([self.way.middle, self.way.z])[:: round(SPACING / ALONG)].copy()
         found = in_sight(
             states, sizes, eye, ground, order, np.empty((count, 4)), count, reach + sizes[number, 0] / 2
         )

@@ -4,7 +4,7 @@ import os
 import threading
 import time
 import tracemalloc
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
@@ -101,18 +101,19 @@ def test_a_bomb_of_entities(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "sentence"),
     [
-        ("<OpenDRIVE>" + "<x/>" * 600_000 + "</OpenDRIVE>", "more than 500,000 elements"),
-        ("<OpenDRIVE><road>" + "<x>" * 400_000, "elements too deep"),
-        ('<OpenDRIVE a="' + "a" * 30_000_000 + '"/>', "one tag is longer than a megabyte"),
-        ("<OpenDRIVE " + " ".join(f'a{i}="1"' for i in range(1_000_000)) + "/>", "one tag is longer"),
-        ("<OpenDRIVE>" + " " * tree.LARGEST + "</OpenDRIVE>", "larger than 50 MB"),
+        (lambda: "<OpenDRIVE>" + "<x/>" * 600_000 + "</OpenDRIVE>", "more than 500,000 elements"),
+        (lambda: "<OpenDRIVE><road>" + "<x>" * 400_000, "elements too deep"),
+        (lambda: '<OpenDRIVE a="' + "a" * 30_000_000 + '"/>', "one tag is longer than a megabyte"),
+        (lambda: "<OpenDRIVE " + "".join(map('a{}="1" '.format, range(200_000))) + "/>", "one tag is longer"),
+        (lambda: "<OpenDRIVE>" + " " * tree.LARGEST + "</OpenDRIVE>", "larger than 50 MB"),
     ],
     ids=["elements", "depth", "attribute", "attributes", "size"],
 )
-def test_too_much_of_anything(tmp_path: Path, content: str, sentence: str) -> None:
+def test_too_much_of_anything(tmp_path: Path, content: Callable[[], str], sentence: str) -> None:
+    text = content()
     tracemalloc.start()
     try:
-        assert sentence in refused(tmp_path, content)
+        assert sentence in refused(tmp_path, text)
         assert tracemalloc.get_traced_memory()[1] < 400e6
     finally:
         tracemalloc.stop()
