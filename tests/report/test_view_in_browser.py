@@ -446,7 +446,7 @@ def test_weather_is_seen_on_a_page_whose_address_names_time_and_camera(
 
 def test_the_time_line_and_the_contact(tab: BrowserTab, tmp_path: Path) -> None:
     """A car at 10 m/s behind a van that brakes from 10 m/s with 2 m/s^2: by hand they touch when its 9 m of
-    gap are gone, 3 s after the van began to brake; the relative speed is then 6 m/s."""
+    gap are gone, 3 s after the van began to brake; the relative speed is then 6 m/s. It is night."""
     road = World().lay(Road.through([[x, 100] for x in range(20, 181, 20)]))
 
     def braking(time: np.ndarray) -> tuple[Any, Any, Any]:
@@ -456,7 +456,7 @@ def test_the_time_line_and_the_contact(tab: BrowserTab, tmp_path: Path) -> None:
     alone = staged.driven(staged.straight(30, 98, 0, 10), 6.0, road)
     drive = staged.among(alone, staged.tracks(6.0, van_1=("van", braking)))
     verdict = judge(road, drive, World())
-    request = Request(words="a contact", world=World(), seed=1, setup=Setup())
+    request = Request(words="a contact", world=World().changed(scene="night"), seed=1, setup=Setup())
     run = Run(
         request=request, index=1, seed=1, road=road, drive=drive, verdict=verdict, outcome=verdict.outcome,
         description=verdict.description,

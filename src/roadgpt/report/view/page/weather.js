@@ -87,7 +87,7 @@ function makeWeather(scene, world, { dome, wood, lights: [ambient, direct], car,
     const lamps = lampsOf({ kind: "car", ...size }).slice(LAMPS.car); // its own headlights would dazzle
     lamps.forEach(({ position }) => position.set(position.x + size.ahead, position.y, position.z - size.height));
     car.group.add(...headlights(size), ...lamps);
-    if (others) others.group.children.forEach((each, n) => each.add(...lampsOf(scene.others.actors[n])));
+    if (others) scene.others.actors.forEach((actor, n) => lampsOf(actor).forEach((lamp) => others.group.children[n].add(lamp)));
   }
   const way = new THREE.Vector3(...sun);
   const isLow = way.lengthSq() > 0;
