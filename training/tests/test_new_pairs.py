@@ -18,6 +18,7 @@ DATA = Path(__file__).resolve().parents[1] / "data"
 CHANGES = sorted((DATA / "changes" / "train").glob("*.jsonl"))
 CONTRASTS = sorted((DATA / "descriptions" / "contrasts").glob("*.jsonl"))
 FREE = sorted((DATA / "descriptions" / "free").glob("*.jsonl"))
+FIELD = sorted((DATA / "field" / "train").glob("*.jsonl"))
 JUDGED = [
     *(DATA / "fresh").rglob("*.jsonl"),
     *(DATA / "descriptions" / "test").glob("*.jsonl"),
@@ -39,11 +40,11 @@ def letters(row: dict[str, Any]) -> str:
     return re.sub(r"\W+", " ", row.get("text", row.get("request", "")).lower()).strip()
 
 
-@pytest.mark.parametrize("path", [*CHANGES, *CONTRASTS, *FREE], ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", [*CHANGES, *CONTRASTS, *FREE, *FIELD], ids=lambda path: path.stem)
 def test_labels_are_in_the_language_of_plans(path: Path) -> None:
     """Of each file every fifth one; all together take a minute."""
     for row in rows(path)[::5]:
-        assert row.keys() == {"text", "plan", "family", "lang"}
+        assert row.keys() == {"text", "plan", "family", "lang", *(["manner"] if path in FIELD else [])}
         assert row["family"] == path.stem
         if row["plan"].startswith("!"):
             assert "has no refusal" not in str(refused(row["plan"])), row
@@ -56,6 +57,9 @@ def test_labels_are_in_the_language_of_plans(path: Path) -> None:
 
 
 def test_there_are_as_many_as_the_pages_say() -> None:
+    page = (DATA / "field" / "README.md").read_text(encoding="utf-8")
+    said = dict(re.findall(r"^\| `(\w+)` \| (\d+) \|", page, re.MULTILINE))
+    assert {path.stem: str(len(rows(path))) for path in FIELD} == said
     assert sum(len(rows(path)) for path in CHANGES) == 13055
     assert sum(len(rows(path)) for path in CONTRASTS) == 3299
     assert sum(len(rows(path)) for path in FREE) == 12740
