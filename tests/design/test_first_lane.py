@@ -5,8 +5,8 @@ import pytest
 from roadgpt.brief import read, remarks
 from roadgpt.design import draft
 from roadgpt.design.room import world_for
-from roadgpt.errors import BriefError
-from roadgpt.network import build_route
+from roadgpt.errors import BriefError, UsageError
+from roadgpt.network import build_route, refuse_other_lane
 from roadgpt.network.road_or_route import legs_of, network_of
 from roadgpt.road import World, build
 
@@ -37,7 +37,9 @@ def test_lanes_are_counted_from_the_kerb(road: str, lane: str, outside: int, lef
         ("straight | lanes=2 && ego lane=1; car lane right", "no lane beside the tested car's lane=1"),
         ("straight | lanes=2 && ego lane=-1; car lane left", "no lane beside the tested car's lane=-1"),
         ("straight | lanes=2 left_hand && ego lane=1; car lane left", "no lane beside"),
-        ("straight && ego lane=0", "lanes count from 1 at the kerb"),
+        ("straight && ego lane=0", "lanes count from 1 to 4 from the kerb"),
+        ("straight && ego lane=9", "there is no lane 9; write for example lane=1"),
+        ("straight && forest x0", "one forest or more, not 0"),
         ("straight && ego lane=right", "lane=right is no lane"),
     ],
 )
@@ -53,3 +55,15 @@ def test_what_lies_beside_the_road_is_said_to_be_not_built() -> None:
         "not built yet: a lake along the road on the left, 2 bridges 40 metres long; the road is made "
         "without it"
     )
+
+
+def test_a_road_that_is_there_is_driven_in_the_lane_that_is_said_or_not_at_all() -> None:
+    world = World().changed(lanes="3+0")
+    road = world.lay(build(draft(read("straight len=100", "plan"), world, (), (), 0)))
+    for lane, is_its in (("1", True), ("-3", True), ("2", False), ("-1", False), ("4", False)):
+        there = world.changed(scene=f"ego lane={lane} v=30")
+        if is_its:
+            refuse_other_lane(road, there)
+        else:
+            with pytest.raises(UsageError, match=r"starts in lane 1 of 3 from the kerb; write lane=1"):
+                refuse_other_lane(road, there)

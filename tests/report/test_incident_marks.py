@@ -124,6 +124,14 @@ def test_labels_of_incidents_lie_apart_and_those_without_room_are_counted(
     assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
 
 
+def test_the_cause_is_marked_once_also_where_it_lies_between_two_control_steps(run: Run) -> None:
+    assert run.verdict is not None
+    first, *others = run.verdict.incidents or ()
+    between = replace(first, at_time=first.at_time - 0.013)
+    made = replace(run, verdict=replace(run.verdict, incidents=(between, *others)))
+    assert [each.s for each in minor_places_of(made)] == [each.at_s for each in others]
+
+
 def test_incidents_of_one_kind_one_after_another_share_a_label(run: Run) -> None:
     places = [each for each in minor_places_of(crowd(run)) if "off the road" in each.text or not each.text]
     assert [each.text for each in places] == [

@@ -323,6 +323,15 @@ def mirrored(brief: Brief) -> Brief:
     return Brief.model_validate({**other, "left_hand": not brief.left_hand, "comes_from": start})
 
 
+def mirrored_scene(scene: Scene) -> Scene:
+    """Returns the scene with left and right exchanged, as it is for traffic on the other side."""
+    other = Scene.model_validate(_with_other_sides(scene.model_dump()))
+    actors = [
+        each.model_copy(update={"offset": each.offset and each.offset.times(-1)}) for each in other.actors
+    ]
+    return other.model_copy(update={"actors": tuple(actors)})
+
+
 def _with_other_sides(value: Any) -> Any:
     """Exchanges left and right in all keys and texts of a value."""
     if isinstance(value, dict):

@@ -15,6 +15,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
+from roadgpt.brief.model import mirrored_scene
 from roadgpt.brief.plan import read_scene
 from roadgpt.brief.scene import NUMBERS, Scene
 from roadgpt.errors import BriefError, UsageError
@@ -34,8 +35,6 @@ FUNCTIONS: Mapping[str, Callable[..., Any]] = {
     "side": lambda offset: "left" if offset > 0 else "right",
 }
 """What formulas can have besides numbers, parameters and a minus. Left is positive."""
-SIDED = re.compile(r"\b(?:left|right|t=(?!0\b(?!\.))-?)")
-MIRRORED = {"left": "right", "right": "left", "t=": "t=-", "t=-": "t="}
 FORMULA, SPEEDS = re.compile(r"\{(.+?)\}"), re.compile(r"(?:\bv=|\bto=|\bspeed )(\{.+?\})")
 TABLE: dict[str, Any] = tomllib.loads(read_text(Path(__file__).with_name("scenarios.toml")))
 WORDS: Mapping[str, str] = TABLE.pop("words")
@@ -83,11 +82,11 @@ class Scenario(NamedTuple):
         if self.fault:
             raise UsageError(self.fault)
         try:
-            text = self.scene_text
-            own = read_scene(SIDED.sub(lambda word: MIRRORED[word[0]], text) if left_hand else text)
+            own = read_scene(self.scene_text)
         except (BriefError, ZeroDivisionError) as error:
             said = "a number is divided by 0" if isinstance(error, ZeroDivisionError) else str(error)
             raise UsageError(f"the scenario '{self}' is not possible: {said}") from error
+        own = mirrored_scene(own) if left_hand else own
         told, added = (each.model_dump(exclude_defaults=True) for each in (own, other))
         for name, value in added.items():
             if told.get(name, value) != value:

@@ -6,7 +6,7 @@ another, each begun by a condition. A number may be a range, from which each dri
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Literal, NamedTuple, Self, get_args
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, model_validator
 
 from roadgpt.brief.amount import Amount, Frozen, exactly, span
 from roadgpt.brief.junctions import Side
@@ -36,7 +36,7 @@ Landform = Literal[
 Lie = Literal["along", "across", "through"]
 FLOWS: Mapping[Flow, int] = {"light": 5, "medium": 12, "dense": 25}
 """How many vehicles drive on each km of a lane."""
-USUAL: Mapping[str, int] = {"adult": 5, "child": 5, "bicycle": 15, "animal": 20}
+USUAL_SPEEDS: Mapping[str, int] = {"adult": 5, "child": 5, "bicycle": 15, "animal": 20}
 """Speeds in km/h: those of Euro NCAP's persons (CPNA) and bicycle (CBNA); that of the animal is ours."""
 VEHICLES: tuple[ActorKind, ...] = ("car", "van", "truck", "bus", "motorcycle", "bicycle")
 MOVING: tuple[ActorKind, ...] = (*VEHICLES, "adult", "child", "animal")
@@ -323,6 +323,8 @@ class Land(Frozen):
     @model_validator(mode="after")
     def _fits(self) -> Self:
         _given(self, self.kind)
+        if not span(self.count).lo >= 1:
+            raise ValueError(f"a landscape has one {self.kind} or more, not {self.count}; leave it out")
         if self.kind in STRUCTURES and (self.lie or self.side):
             raise ValueError(f"'{self.kind}' has no {self.lie or self.side}; leave it out")
         return self
@@ -345,7 +347,7 @@ class Scene(Frozen):
 
     speed: Amount | None = None
     """The speed of the tested car at its start in km/h."""
-    lane: Annotated[int, Field(ge=-MOST_LANES, le=MOST_LANES)] | None = None
+    lane: int | None = None
     """The lane in which the tested car starts, of those of its direction: 1 is the one at the kerb, -1 the
     innermost one."""
     turn: Literal["left", "right", "straight"] | None = None
@@ -372,8 +374,11 @@ class Scene(Frozen):
     @model_validator(mode="after")
     def _fits(self) -> Self:
         _given(self, "a scene")
-        if self.lane == 0:
-            raise ValueError("lanes count from 1 at the kerb, or from -1 at the innermost one; write lane=1")
+        if self.lane is not None and not 1 <= abs(self.lane) <= MOST_LANES:
+            raise ValueError(
+                f"lanes count from 1 to {MOST_LANES} from the kerb, or from -1 from the innermost one, and"
+                f" there is no lane {self.lane}; write for example lane=1"
+            )
         for role in self.actors:
             for event in (action.at for action in role.actions if action.at and action.at.what):
                 same = [each for each in self.actors if each.kind == event.of][event.number - 1 :][:1]
@@ -404,10 +409,14 @@ class Scene(Frozen):
                 found[side] = max(found[side], count)
         return found
 
+    def lanes_in_and_out(self, left_hand: bool) -> tuple[int, int]:
+        """Returns how many lanes of its direction it needs inside and outside of the tested car's."""
+        left, right = self.lanes_beside.values()
+        return (right, left) if left_hand else (left, right)
+
     def lanes_needed(self, left_hand: bool) -> int:
         """Returns how many lanes the scene needs in the direction of the tested car."""
-        left, right = self.lanes_beside.values()
-        inner, outer = (right, left) if left_hand else (left, right)
+        inner, outer = self.lanes_in_and_out(left_hand)
         if self.lane is None:
             return 1 + inner + outer
         return max(2, self.lane + inner if self.lane > 0 else outer - self.lane)
@@ -415,8 +424,8 @@ class Scene(Frozen):
     def lane_driven(self, left_hand: bool) -> int | None:
         """Returns the lane in which the tested car starts, counted as ``lane``, where the scene says or needs
         one; None if it does not matter."""
-        beside = self.lanes_beside
-        return self.lane or (1 + beside["left" if left_hand else "right"] if any(beside.values()) else None)
+        inner, outer = self.lanes_in_and_out(left_hand)
+        return self.lane or (1 + outer if inner or outer else None)
 
     @property
     def surfaces(self) -> tuple[Surface, ...]:

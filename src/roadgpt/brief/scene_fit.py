@@ -12,7 +12,7 @@ from roadgpt.brief.model import Brief, Clause, span
 from roadgpt.brief.normal import STRAIGHT
 from roadgpt.brief.outline import outline
 from roadgpt.brief.ranges import Range
-from roadgpt.brief.scene import ACROSS, FLOWS, LEAVES, MOVING, USUAL, Action, Role, Scene, Where
+from roadgpt.brief.scene import ACROSS, FLOWS, LEAVES, MOVING, USUAL_SPEEDS, Action, Role, Scene, Where
 from roadgpt.errors import BriefError
 
 ROLLS = 4.0  # s at speed before anything happens
@@ -89,7 +89,7 @@ def _most(amount: Amount | None) -> float:
 def _lasts(role: Role, speed: float, across: float) -> float:
     """Returns after how many seconds what somebody does has happened; ``across`` is how many metres who comes
     from beside the road has to go if nothing is said."""
-    usual = speed if role.faster or role.kind not in USUAL else USUAL[role.kind] / KMH
+    usual = speed if role.faster or role.kind not in USUAL_SPEEDS else USUAL_SPEEDS[role.kind] / KMH
     own = _most(role.speed) / KMH if role.speed else max(usual + _most(role.faster) / KMH, 0.0)
     own *= role.kind in MOVING
     closing = speed + own if role.where == "oncoming" else speed - own
@@ -234,11 +234,7 @@ def _faults(scene: Scene, brief: Brief) -> Iterator[str]:
                 yield f"'{role}' needs {mark.of} {mark.number}, and there are {count:g}; change one of them"
     if scene.lane and abs(scene.lane) > along:
         yield f"the tested car's lane={scene.lane} needs more lanes; write lanes={abs(scene.lane)}"
-    needs = scene.lanes_beside
-    inner, outer = (
-        needs["right" if brief.left_hand else "left"],
-        needs["left" if brief.left_hand else "right"],
-    )
+    inner, outer = scene.lanes_in_and_out(brief.left_hand)
     if scene.lane and (outer > scene.lane - 1 if scene.lane > 0 else inner > -scene.lane - 1):
         yield f"there is no lane beside the tested car's lane={scene.lane} for those who are there; change it"
     if 2 <= along < (least := scene.lanes_needed(brief.left_hand)):

@@ -22,7 +22,7 @@ from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended, Handover, c
 from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.view import CameraSpec, Command, JunctionAhead, LightAhead, Other, SignAhead, View
 from roadgpt.errors import UsageError
-from roadgpt.network import only_road, refuse_without_route
+from roadgpt.network import only_road, refuse_other_lane, refuse_without_route
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -145,6 +145,7 @@ def simulate(
     refuse_without_route(road, "driven")
     world = world.in_weather_of(seed)
     road = world.lay(road)
+    refuse_other_lane(road, world)
     refuse_ignored(engine, world, road, replay is not None)
     traffic = None
     if replay is not None or world.scene.has_others:

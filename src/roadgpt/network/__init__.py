@@ -17,6 +17,7 @@ from roadgpt.network.road_or_route import (
     made_from,
     network_of,
     only_road,
+    refuse_other_lane,
     refuse_without_route,
     road_from_json,
 )
@@ -63,6 +64,7 @@ __all__ = [
     "read_opendrive",
     "read_road",
     "read_source",
+    "refuse_other_lane",
     "refuse_without_route",
     "road_from_json",
 ]

@@ -33,6 +33,21 @@ def refuse_without_route(road: Road, what: str) -> None:
         )
 
 
+def refuse_other_lane(road: Road, world: World) -> None:
+    """Raises UsageError if the scene says in which lane the tested car starts, and it starts in another."""
+    if (lane := world.scene.lane) is None:
+        return
+    first = legs_of(road, world)[0]
+    profile = network_of(road, world).road(first.road).profile
+    ids = profile.along_ids if profile.leads_along(first.lane) else profile.against_ids
+    here, said = sorted(ids, key=abs, reverse=True).index(first.lane), lane - (lane > 0)
+    if here != said % len(ids) or abs(lane) > len(ids):
+        raise UsageError(
+            f"the scene says lane={lane}, and on this road the tested car starts in lane {1 + here} of"
+            f" {len(ids)} from the kerb; write lane={1 + here}, or leave it out"
+        )
+
+
 # The next three functions are where single roads and Routes become one: all other code asks them.
 
 

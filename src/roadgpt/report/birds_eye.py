@@ -104,6 +104,7 @@ WORDS = {
     "speeding": "too fast",
 }
 NEAR = 15.0  # m, from an incident to the next one of its kind; they share a label
+SAME = 0.05  # s, from an incident to the control step that decided
 RULES = {
     "inside_map": "leaves the map",
     "no_overlap": "overlaps itself",
@@ -359,7 +360,8 @@ def minor_places_of(run: Run) -> list[MarkedPlace]:
     groups: list[list[Incident]] = []
     latest: dict[str, list[Incident]] = {}
     for each in incidents:
-        if verdict is not None and (each.kind, each.at_time) == (verdict.cause, verdict.at_time):
+        since = math.inf if verdict is None or verdict.at_time is None else verdict.at_time - each.at_time
+        if verdict is not None and each.kind == verdict.cause and 0 <= since < SAME:
             continue
         group = latest.get(f"{each.kind}{each.other}")
         if group is None or math.dist(group[-1].at_xy, each.at_xy) > NEAR:

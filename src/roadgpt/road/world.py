@@ -432,9 +432,8 @@ class World(BaseModel):
         lane = self.scene.lane_driven(profile.left_hand)
         if lane is None:
             return profile
-        return replace(
-            profile, driven=min(max(profile.driven + 1 - lane, 0) if lane > 0 else -1 - lane, profile.driven)
-        )
+        driven = profile.driven + 1 - lane if lane > 0 else -1 - lane
+        return replace(profile, driven=min(max(driven, 0), profile.driven))
 
     def lay(self, road: "Road") -> "Road":
         """Returns the road with the lanes and banked bends of this World's ``section``. A road that has a

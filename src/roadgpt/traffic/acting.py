@@ -13,7 +13,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from roadgpt.brief.junctions import Side
-from roadgpt.brief.scene import ALONG, CUES, DOINGS, MOVING, NUMBERS, USUAL, Action, Role, What, Where
+from roadgpt.brief.scene import ALONG, CUES, DOINGS, MOVING, NUMBERS, USUAL_SPEEDS, Action, Role, What, Where
 from roadgpt.errors import SceneError
 from roadgpt.traffic.actor import SIZES, STEP
 from roadgpt.traffic.following import HARDEST, JAM, idm, time_over
@@ -252,8 +252,8 @@ class Act:
             return self.n["speed"]
         if "faster" in self.n:
             return max(self.car.v + self.n["faster"], 0.0)
-        if self.kind in USUAL:
-            return min(USUAL[self.kind] / 3.6, self.limit)
+        if self.kind in USUAL_SPEEDS:
+            return min(USUAL_SPEEDS[self.kind] / 3.6, self.limit)
         if self.role.actions and self.role.actions[0].what in ("turn_in", "turn_across"):
             return min(TURNING, self.limit)
         return self.limit if self.where == "oncoming" else min(self.car.v, self.limit) or self.limit
@@ -315,7 +315,7 @@ class Act:
         """Returns the meeting of somebody who comes along another way, and the station where it is at first.
         The places on the tested car are those of Euro NCAP: CCCscp, CCFtap, CMCscp, CMFtap."""
         car, (length, width, _) = self.car, self.size
-        if "impact" in self.n or self.kind in USUAL:
+        if "impact" in self.n or self.kind in USUAL_SPEEDS:
             hit = (self.n.get("impact", 0.5) - 0.5) * car.width
             found = Meeting(met.own + hit, met.car - width / 2)
         elif self.first in ("merge", "turn_in") or self.where in ("ramp", "roundabout"):

@@ -13,7 +13,7 @@ moves as recorded; from the end of the recording, or from a contact that makes i
 ``docs/explanation/traffic.md`` has all definitions.
 """
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,18 +50,24 @@ COMFORT, OVER, RECENT, SIDEWAYS = 3.5, 0.5, 3.0, 2.0
 seconds before the contact in which it counts, and the m/s^2 sideways above which a bend calls for it."""
 SOON, CLOSE, CALLS = 4.0, 1.0, 1.5
 """Somebody calls for braking with a conflict time or time headway of fewer s, or if m/s^2 are required."""
-OWN_DOING = "avoidable: it"
 FRONTS = np.array(
     [[2.0, 2.0, 2.4, 3.33, 5.56, 8.33, 11.11, 13.89, 16.67], [1, 1, 1, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6]]
 )
 """R157, 5.2.3.3: speeds in m/s and the least time gaps in s; the least distance is 2 m."""
 
 
-def avoidance_of(
-    road: "Road", drive: "Drive", world: "World", collision: Incident
-) -> tuple[bool, tuple[str, ...], str]:
-    """Returns whether the tested car's first collision could have been avoided, which of the four drivers
-    avoid it, and how in words."""
+class Avoidance(NamedTuple):
+    """Whether and by whom a collision could have been avoided."""
+
+    by: tuple[str, ...]
+    """Those of the four drivers that avoid it."""
+    is_own_doing: bool
+    """Whether the tested car brought it about itself."""
+    said: str
+
+
+def avoidance_of(road: "Road", drive: "Drive", world: "World", collision: Incident) -> Avoidance:
+    """Returns by whom the tested car's first collision could have been avoided."""
     meeting = _Encounter(road, drive, world, collision)
     courses = {driver: _course(driver, meeting) for driver in DRIVERS}
     by = tuple(driver.said for driver, (hits, _) in courses.items() if not hits)
@@ -73,8 +79,8 @@ def avoidance_of(
     else:
         said = "no reference driver (careful driver, Reg157, FSM, RSS) could have avoided it"
     if own := meeting.own_doing() or _braked_for_nothing(road, drive, world, collision):
-        return True, by, f"{OWN_DOING} {own}" + f"; {said}" * bool(by)
-    return bool(by), by, said
+        return Avoidance(by, True, f"avoidable: it {own}" + f"; {said}" * bool(by))
+    return Avoidance(by, False, said)
 
 
 def _braked_for_nothing(road: "Road", drive: "Drive", world: "World", collision: Incident) -> str:

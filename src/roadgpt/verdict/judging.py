@@ -126,11 +126,11 @@ def judge(
     is_yielding = handed_to and cause in GIVES_WAY  # what came of it may be a matter of the brakes
     hit = _contact_of(incidents or (), "collision", 0.0) if is_yielding or cause == "collision" else None
     if hit is not None:
-        from roadgpt.verdict.avoidable import OWN_DOING, avoidance_of
+        from roadgpt.verdict.avoidable import avoidance_of
 
-        is_avoidable, avoided_by, avoided = avoidance_of(road, drive, world, hit)
-        outcome = "FAIL" if is_avoidable or cause != "collision" else "UNAVOIDABLE"
-        if cause == "collision" and hit.contact is not None and avoided.startswith(OWN_DOING):
+        avoided_by, is_own_doing, avoided = avoidance_of(road, drive, world, hit)
+        outcome = "FAIL" if avoided_by or is_own_doing or cause != "collision" else "UNAVOIDABLE"
+        if cause == "collision" and hit.contact is not None and is_own_doing:
             contact = replace(hit, contact=replace(hit.contact, at_fault=True))
             incidents = tuple(contact if each is hit else each for each in incidents or ())
     if handed_to and outcome == "FAIL":
