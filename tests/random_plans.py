@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from roadgpt.brief.readers.model.grammar import END, PlanAutomaton
+from roadgpt.brief.readers.model.grammar import END, PlanAutomaton, change_request
 from roadgpt.brief.readers.model.slots import NumberSlot
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, TOKENS, plan_of
 
@@ -14,7 +14,7 @@ def random_plan(seed: int, values: Sequence[float], is_change: bool = False, mos
     rng = np.random.default_rng(seed)
     units = ("metres", "percent", "degrees", "")
     slots = [NumberSlot(value, units[index % 4]) for index, value in enumerate(values)]  # type: ignore[arg-type]
-    writer = PlanAutomaton(slots, frozenset({"3", "15"}), is_change=is_change)
+    writer = PlanAutomaton(slots, frozenset({"3", "15"}), whole=change_request if is_change else None)
     tokens: list[str] = []
     while len(tokens) < most:
         may = writer.allowed()

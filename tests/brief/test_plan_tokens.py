@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from random_plans import random_plan
 from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.brief.readers.model.grammar import END, PlanAutomaton
+from roadgpt.brief.readers.model.grammar import END, PlanAutomaton, change_request
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, plan_of
 from roadgpt.brief.refusal import refused
@@ -38,7 +38,7 @@ def test_plans_of_changes_survive_being_cut_into_tokens() -> None:
             continue
         cut += 1
         assert normal(plan_of(tokens, text.slots)) == normal(row["plan"]), row
-        writer = PlanAutomaton(text.slots, frozenset(word.text for word in text.words), is_change=True)
+        writer = PlanAutomaton(text.slots, frozenset(word.text for word in text.words), whole=change_request)
         for token in (*tokens, END):
             if NUMBER_OF[token] not in writer.allowed():
                 break

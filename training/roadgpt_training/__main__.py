@@ -42,6 +42,12 @@ NETWORKS = Option(
     "--networks", "Folder with hand-written routes with junctions, as JSON lines in its subfolder 'train'.",
     folder, DATA / "networks",
 )
+FIELD_PAIRS = Option(
+    "--field", "Folder with hand-written texts of the field, as JSON lines in its subfolder 'train'.",
+    folder, DATA / "field",
+)
+ENDINGS = {"roads": "", "routes": "_routes", "scenes": "_scenes"}
+"""What follows 'encoder' and 'decoder' in the file names of each network."""
 OUT = Argument("out", "OUT", "Name the folder to write into.", folder)
 CHECKPOINT = Argument("checkpoint", "CHECKPOINT", kind=folder)
 OF_DATA = (
@@ -50,12 +56,13 @@ OF_DATA = (
     options.seed("The same seed gives the same pairs.", 1),
 )
 OF_TRAIN = (
-    *(OUT, HAND, CHANGES, NETWORKS),
+    *(OUT, HAND, CHANGES, NETWORKS, FIELD_PAIRS),
     Option("--weights", "Folder of all-MiniLM-L6-v2: model.safetensors, vocab.txt.", folder),
     Option("--installed", "Start from the installed reader instead of --weights.", bool),
     Option("--steps", "Number of batches that each process trains on.", COUNT, 14_000),
     Option("--size", "Number of pairs in a batch.", COUNT, 48),
-    Option("--routes", "Train the neural network for routes and maps, not one for single roads.", bool),
+    Option("--network", "What the network reads: single roads and changes, routes and maps, or scenes.",
+           click.Choice(tuple(ENDINGS)), "roads"),
     Option("--decoder-layers", "Number of decoder layers; with --installed, a multiple of the number that "
            "the installed reader has.", whole(1, 24, "layers")),
     Option("--encoder-layers", "Number of encoder layers; with --installed, a multiple of the number that "
@@ -73,15 +80,13 @@ OF_TRAIN = (
     options.seed("The same seed gives the same pairs.", 1),
 )
 OF_EXPORT = (
-    *(CHECKPOINT, OUT, HAND, CHANGES, NETWORKS),
-    Option("--routes", "Folder of a training run with --routes; its neural network reads routes and maps.",
-           folder),
-    Option("--only", "The network that CHECKPOINT replaces in the installed reader; the other stays.",
-           click.Choice(("roads", "routes"))),
+    *(OUT, HAND, CHANGES, NETWORKS, FIELD_PAIRS),
+    *(Option(f"--{name}", f"Folder of a training of the network for {name}; without it, the installed one.",
+             folder) for name in ENDINGS),
     Option("--chats", "Also write this many pairs as chats, to fine-tune larger models.", COUNT),
     options.seed("Seed of the chats.", 1),
 )
-OF_CALIBRATE = (Argument("weights", "WEIGHTS", kind=folder), HAND, CHANGES, NETWORKS)
+OF_CALIBRATE = (Argument("weights", "WEIGHTS", kind=folder), HAND, CHANGES, NETWORKS, FIELD_PAIRS)
 OF_CHATS = (
     OUT,
     Option("--number -n", "Number of pairs.", COUNT, 1000),
@@ -141,7 +146,8 @@ def train(
     networks: Path,
     weights: Path | None,
     installed: bool,
-    routes: bool,
+    network: str,
+    field: Path,
     own: Path | None,
     seed: int,
     **rest: Any,
@@ -160,66 +166,71 @@ def train(
         from roadgpt_training.train import TrainingSettings, train_together
     except ImportError as error:
         raise UsageError(f"this needs more libraries: {INSTALL}") from error
-    from roadgpt.brief.readers.model import ROUTES, WEIGHTS
+    from roadgpt.brief.readers.model import WEIGHTS
     from roadgpt_training.back_labelling import measured_pairs
     from roadgpt_training.pretrained import begin
 
     if weights and installed:
         raise UsageError("a training starts from --weights or from what is --installed; name one of them")
     pairs = [*_all_pairs(hand, TRAINED_ON, changes, networks, "train"), *(_pairs_of(own) if own else [])]
+    pairs += _of_field(field / "train")
     pairs += islice(measured_pairs(seed), MEASURED)
     pieces = begin(out, weights, WEIGHTS if installed else None)
     start = weights / "model.safetensors" if weights else WEIGHTS if installed else None
-    ending = ROUTES if routes else ""
-    plan = TrainingSettings(seed=seed, ending=ending, is_of_routes=routes, **rest)
+    ending = "" if network == "scenes" else ENDINGS[network]
+    plan = TrainingSettings(seed=seed, ending=ending, network=network, **rest)
     train_together(out, pieces, start, pairs, plan, click.echo)
 
 
 @command.command(params=[*OF_EXPORT])
 def export(
-    checkpoint: Path,
     out: Path,
     hand: Path,
     changes: Path,
     networks: Path,
-    routes: Path | None,
-    only: str | None,
+    field: Path,
     chats: int | None,
     seed: int,
+    **trained: Path | None,
 ) -> None:
-    """Write the reader saved in the folder CHECKPOINT into the folder OUT, quantised to int8."""
-    if only and routes:
-        raise UsageError(f"--only {only} takes CHECKPOINT alone; leave out --routes")
+    """Write the reader with newly trained networks into the folder OUT, quantised to int8."""
     try:
         from roadgpt_training.export import export_checkpoints
     except ImportError as error:
         raise UsageError(f"this needs more libraries: {INSTALL}") from error
-    from roadgpt.brief.readers.model import ROUTES, WEIGHTS
+    from roadgpt.brief.readers.model import WEIGHTS
+    from roadgpt_training.calibrate import write_settings
     from roadgpt_training.filler_words import filler_words
 
     words = filler_words(_all_pairs(hand, TRAINED_ON, changes, networks, "train"))
-    checkpoints = {ROUTES if only == "routes" else "": checkpoint, **({ROUTES: routes} if routes else {})}
-    export_checkpoints(
-        checkpoints, out, _held_back(hand, changes, networks), words, WEIGHTS if only else None
-    )
+    checkpoints = {ENDINGS[name]: place for name, place in trained.items() if place}
+    export_checkpoints(checkpoints, out, words, WEIGHTS if len(checkpoints) < len(ENDINGS) else None)
+    write_settings(out, _held_back(hand, changes, networks, field))
     click.echo(f"{sum(file.stat().st_size for file in out.iterdir()) / 1e6:.1f} MB in {out}")
     if chats:
         _write_chats(out, chats, seed)
 
 
 @command.command(params=[*OF_CALIBRATE])
-def calibrate(weights: Path, hand: Path, changes: Path, networks: Path) -> None:
+def calibrate(weights: Path, hand: Path, changes: Path, networks: Path, field: Path) -> None:
     """Fit the confidence of the reader in the folder WEIGHTS again, on texts held back from training."""
     from roadgpt_training.calibrate import write_settings
 
-    write_settings(weights, _held_back(hand, changes, networks))
+    write_settings(weights, _held_back(hand, changes, networks, field))
 
 
-def _held_back(hand: Path, changes: Path, networks: Path) -> "list[Pair]":
+def _held_back(hand: Path, changes: Path, networks: Path, field: Path) -> "list[Pair]":
     from roadgpt_training.data import is_for_roads_only
 
     told = _all_pairs(hand, HELD_BACK, changes, networks, "validation")
-    return [pair for pair in told if not is_for_roads_only(pair)]
+    return [*(pair for pair in told if not is_for_roads_only(pair)), *_of_field(field / "validation")]
+
+
+def _of_field(place: Path) -> "list[Pair]":
+    """Returns the texts of the field in a folder; a mark in the family says that they are of the field."""
+    from roadgpt_training.field import FIELD
+
+    return [replace(pair, family=f"{FIELD}{pair.family}") for pair in _pairs_of(place)]
 
 
 def _all_pairs(hand: Path, folders: Sequence[str], changes: Path, networks: Path, part: str) -> list["Pair"]:

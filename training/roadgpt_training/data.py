@@ -13,10 +13,18 @@ from roadgpt.brief.model import Amount
 from roadgpt.brief.normal import STRAIGHT, normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.before import TOLD_ON_ROUTES
-from roadgpt.brief.readers.model.neural_network import WINDOW, WordPieces
+from roadgpt.brief.readers.model.neural_network import WordPieces
 from roadgpt.brief.readers.model.slots import SLOTS, NumberSlot, slot_name, slotted
-from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, OF_ROADS, SLOT_TOKENS, Compared
+from roadgpt.brief.readers.model.vocabulary import (
+    NUMBER_OF,
+    OF_ROADS,
+    OF_ROUTES,
+    SLOT_TOKENS,
+    TOKENS,
+    Compared,
+)
 from roadgpt.brief.sentence import sentence
+from roadgpt_training import field
 from roadgpt_training.asides import with_asides
 from roadgpt_training.augmentation import augmented
 from roadgpt_training.generator import draw, draw_change, draw_specified, pairs, series
@@ -29,32 +37,46 @@ from roadgpt_training.tokens import tokens_of
 
 Numbers = npt.NDArray[np.int64]
 LONGEST_PLAN = 95
-SHARES: Mapping[str, float] = {
-    "hand": 0.10,
-    "free": 0.20,
-    "contrasts": 0.09,
-    "changes": 0.22,
-    "generated": 0.04,
-    "generated contrasts": 0.05,
-    "generated changes": 0.11,
-    "generated specs": 0.19,
+MOST_CHUNKS = 4  # of a text
+SHARES: Mapping[str, Mapping[str, float]] = {
+    "roads": {
+        "hand": 0.10,
+        "free": 0.20,
+        "contrasts": 0.09,
+        "changes": 0.22,
+        "generated": 0.04,
+        "generated contrasts": 0.05,
+        "generated changes": 0.11,
+        "generated specs": 0.19,
+    },
+    "routes": {
+        "networks": 0.22,
+        "field": 0.26,
+        "composed": 0.08,
+        "generated routes": 0.22,
+        "routes": 0.06,
+        "hand": 0.06,
+        "free": 0.05,
+        "contrasts": 0.02,
+        "generated": 0.005,
+        "generated contrasts": 0.01,
+        "generated specs": 0.015,
+    },
+    "scenes": {
+        "field": 0.6,
+        "composed": 0.2,
+        "networks": 0.04,
+        "hand": 0.07,
+        "free": 0.07,
+        "contrasts": 0.02,
+    },
 }
-"""The share of each series of pairs in the training of the networks for single roads and changes."""
-SHARES_OF_ROUTES: Mapping[str, float] = {
-    "networks": 0.34,
-    "generated routes": 0.36,
-    "routes": 0.08,
-    "hand": 0.08,
-    "free": 0.06,
-    "contrasts": 0.03,
-    "generated": 0.01,
-    "generated contrasts": 0.015,
-    "generated specs": 0.025,
-}
-"""The share of each series of pairs in the training of the network for routes and maps. ``networks`` are
-hand-written routes with junctions, ``routes`` join these to hand-written roads, and ``generated routes`` come
-from grammars.
+"""The share of each series of pairs in the training of each network. ``networks`` are hand-written routes
+with junctions, ``routes`` join these to hand-written roads, ``generated ...`` come from grammars, ``field``
+are texts of the field, and ``composed`` join those that tell only a scene to roads.
 """
+TOKENS_OF = {"roads": OF_ROADS, "routes": OF_ROUTES, "scenes": TOKENS}
+"""The tokens that each network knows."""
 NETWORK = "networks/"
 """Prefix of the family names of all pairs with routes or maps."""
 KINDS_OF_FAMILIES = {"x_": "contrasts", "y_": "free"}
@@ -85,11 +107,14 @@ class Example:
     plan with start and end token.
     """
 
-    pieces: tuple[int, ...]
+    pieces: tuple[tuple[int, ...], ...]
+    """Chunk by chunk."""
     tokens: tuple[int, ...]
 
 
-def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = None) -> Example | None:
+def example(
+    pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = None, is_scene: bool = False
+) -> Example | None:
     """Returns a pair as numbers; None if its text or plan is too long, or if the plan has a number that is
     not in the text, or a token that is not in the vocabulary.
 
@@ -98,19 +123,20 @@ def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = No
     the network learns nothing about the token after the refusal.
     """
     taken = slotted(pair.text, pair.is_change)
-    plan = pair.plan if pair.is_change else with_shared_values(_without_motorway(pair.plan), taken.slots)
-    compared = None if pair.is_change else Compared.of(taken.text)
+    is_road = not (pair.is_change or is_scene)
+    plan = with_shared_values(_without_motorway(pair.plan), taken.slots) if is_road else pair.plan
+    compared = Compared.of(taken.text) if is_road else None
     tokens = tokens_of(plan, taken.slots, compared)
     if tokens is None or len(tokens) > LONGEST_PLAN - 2 or any(token not in NUMBER_OF for token in tokens):
         return None
     words = [word.text for word in taken.words]
     if rng is not None and taken.slots:
         words, tokens = _reslotted(words, tokens, taken.slots, rng)
-    numbers, _ = pieces.encode(words)
-    if len(numbers) > WINDOW:
+    chunks = pieces.encode(words)
+    if len(chunks) > MOST_CHUNKS:
         return None
-    end = () if plan in CAUSED else (2,)
-    return Example(tuple(numbers), (1, *(NUMBER_OF[token] for token in tokens), *end))
+    end = () if plan in CAUSED and not is_scene else (2,)
+    return Example(tuple(map(tuple, chunks)), (1, *(NUMBER_OF[token] for token in tokens), *end))
 
 
 def _without_motorway(plan: str) -> str:
@@ -131,28 +157,31 @@ def _reslotted(
 
 
 def examples(
-    seed: int, hand: Sequence[Pair], pieces: WordPieces, of_series: Mapping[str, float] = SHARES
+    seed: int, hand: Sequence[Pair], pieces: WordPieces, network: str = "roads"
 ) -> Iterator[Example]:
     """Yields an endless series of examples: a mixture of generated pairs and of variations of the
-    hand-written pairs, in the shares ``of_series``. Held-out texts and pairs that ``example`` rejects are
+    hand-written pairs, in the shares of a network. Held-out texts and pairs that ``example`` rejects are
     left out.
     """
     streams = _streams(seed, hand)
-    names = [name for name in of_series if name in streams]
+    names = [name for name in SHARES[network] if name in streams]
     rng = np.random.default_rng([seed, 7])
-    shares = tuple(accumulate(of_series[name] for name in names))
-    is_of_routes = "networks" in of_series
+    shares = tuple(accumulate(SHARES[network][name] for name in names))
     while True:
-        pair = next(streams[names[weighted(shares, rng)]])
-        if not pair.is_change and rng.random() < MENTIONS:
+        name = names[weighted(shares, rng)]
+        pair = next(streams[name])
+        is_of_field = name in ("field", "composed")
+        if not pair.is_change and not is_of_field and network != "scenes" and rng.random() < MENTIONS:
             pair = with_mention(pair, rng) or pair
         if pair.is_change and rng.random() < ASIDES:
             pair = with_asides(pair, rng)
         elif rng.random() < TALK:
             pair = replace(pair, text=with_talk(pair.text, pair.lang, rng))
-        is_left_out = is_held_out(pair.text) or (is_of_routes and is_for_roads_only(pair))
-        made = None if is_left_out else example(pair, pieces, rng)
-        if made and (is_of_routes or max(made.tokens) < len(OF_ROADS)):
+        if is_held_out(pair.text) or (network == "routes" and not is_of_field and is_for_roads_only(pair)):
+            continue
+        part = field.of_scene(pair) if network == "scenes" else field.of_road(pair) if is_of_field else pair
+        made = example(part, pieces, rng, network == "scenes") if part else None
+        if made and max(made.tokens) < len(TOKENS_OF[network]):
             yield made
 
 
@@ -185,12 +214,16 @@ def _streams(seed: int, hand: Sequence[Pair]) -> dict[str, Iterator[Pair]]:
         joined = routes(roads, kinds["networks"], np.random.default_rng([seed, 4]))
         rng = np.random.default_rng([seed, 5])
         found["routes"] = (augmented(pair, {}, rng) for pair in joined)
+    if "field" in kinds:
+        roads = [pair for kind in ("hand", "free", "networks") for pair in kinds.get(kind, ())]
+        found["field"] = field.varied(kinds["field"], np.random.default_rng([seed, 9]))
+        found["composed"] = field.composed(kinds["field"], roads, np.random.default_rng([seed, 10]))
     return found
 
 
 def _kind(pair: Pair) -> str:
-    if pair.family.startswith(NETWORK):
-        return "networks"
+    if pair.family.startswith((NETWORK, field.FIELD)):
+        return "networks" if pair.family.startswith(NETWORK) else "field"
     return "changes" if pair.is_change else KINDS_OF_FAMILIES.get(pair.family[:2], "hand")
 
 
@@ -210,27 +243,30 @@ def _said_back(pair: Pair) -> Pair:
 
 
 def training_batches(
-    seed: int, hand: Sequence[Pair], pieces: Sequence[str], shares: Mapping[str, float], size: int, pool: int
+    seed: int, hand: Sequence[Pair], pieces: Sequence[str], network: str, size: int, pool: int
 ) -> Iterator[tuple[Numbers, Numbers]]:
     """Yields ``batches`` of ``examples`` without end; ``pieces`` is the vocabulary of word pieces."""
-    return batches(examples(seed, hand, WordPieces(pieces), shares), size, pool, seed)
+    return batches(examples(seed, hand, WordPieces(pieces), network), size, pool, seed)
 
 
 def batches(stream: Iterator[Example], size: int, pool: int, seed: int) -> Iterator[tuple[Numbers, Numbers]]:
     """Yields batches of ``size`` examples of similar length, padded with zeros.
 
     Each ``pool`` batches are cut from one group of examples, which is first sorted by length. A batch is the
-    word pieces, of shape (size, length of the longest text), and the tokens, of shape (size, length of the
+    word pieces (size, chunks, length of the longest chunk), and the tokens (size, length of the
     longest plan); both lengths are rounded up to a multiple of ``STRIDE``.
     """
     rng = np.random.default_rng([seed, 8])
     while True:
         many = sorted(
-            (next(stream) for _ in range(size * pool)), key=lambda e: (len(e.pieces), len(e.tokens))
+            (next(stream) for _ in range(size * pool)),
+            key=lambda e: (len(e.pieces), len(e.pieces[0]), len(e.tokens)),
         )
         for index in rng.permutation(pool):
             batch = many[index * size : (index + 1) * size]
-            yield padded([e.pieces for e in batch]), padded([e.tokens for e in batch])
+            most = max(len(e.pieces) for e in batch)
+            chunks = padded([chunk for e in batch for chunk in (*e.pieces, *[()] * (most - len(e.pieces)))])
+            yield chunks.reshape(size, most, -1), padded([e.tokens for e in batch])
 
 
 def padded(rows: Sequence[Sequence[int]]) -> Numbers:

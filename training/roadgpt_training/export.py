@@ -9,15 +9,22 @@ import torch
 from torch import Tensor, nn
 
 from roadgpt.brief.readers.model import ROUTES
+from roadgpt.brief.readers.model.neural_network import SCENES
 from roadgpt.brief.readers.model.vocabulary import OF_ROADS
 from roadgpt.errors import UsageError
-from roadgpt_training.calibrate import write_settings
-from roadgpt_training.network import ReaderNetwork, network_of
-from roadgpt_training.pair import Pair
+from roadgpt_training.network import (
+    STATES,
+    NetworkSizes,
+    PlanWriter,
+    ReaderNetwork,
+    SceneNetwork,
+    network_of,
+)
 from roadgpt_training.pretrained import NOTICE, read_vocabulary
 
 OPSET = 17
 SHARED = "reader.pieces.weight_quantized"
+READS = {"": "single roads", ROUTES: "routes", SCENES: "scenes"}
 EMBEDDING = "embedding.bin"
 """Name of the file that holds the tensor ``SHARED``; all encoders read this file."""
 
@@ -36,6 +43,19 @@ class EncoderGraph(nn.Module):
         return torch.stack([torch.stack(pair) for pair in self.reader.start(memory)])
 
 
+class SceneEncoderGraph(nn.Module):
+    """Maps states of the encoder for roads (1, layers, n, width) to keys and values as ``EncoderGraph``."""
+
+    def __init__(self, reader: SceneNetwork) -> None:
+        super().__init__()
+        self.reader = reader
+
+    def forward(self, states: Tensor) -> Tensor:
+        """Returns the keys and values of a description."""
+        memory = self.reader.encode(states)
+        return torch.stack([torch.stack(pair) for pair in self.reader.start(memory)])
+
+
 class DecoderGraph(nn.Module):
     """One step of the decoder, which takes the last token of a plan and scores the next token.
 
@@ -45,7 +65,7 @@ class DecoderGraph(nn.Module):
     scores (batch, tokens), and ``own`` with t + 1 tokens.
     """
 
-    def __init__(self, reader: ReaderNetwork) -> None:
+    def __init__(self, reader: PlanWriter) -> None:
         super().__init__()
         self.reader = reader
 
@@ -65,7 +85,7 @@ class DecoderGraph(nn.Module):
         return reader.scores(x)[:, 0], torch.stack(kept)
 
 
-def export(reader: ReaderNetwork, folder: Path, ending: str = "") -> None:
+def export(reader: ReaderNetwork | SceneNetwork, folder: Path, ending: str = "") -> None:
     """Writes the network to ``encoder.onnx`` and ``decoder.onnx``, or with ``ending`` before ".onnx", with
     weights in int8. The weights use 7 of the 8 bits, so that the files are an eighth smaller when compressed.
     """
@@ -89,7 +109,7 @@ def export(reader: ReaderNetwork, folder: Path, ending: str = "") -> None:
 
 
 def _graphs(
-    reader: ReaderNetwork,
+    reader: ReaderNetwork | SceneNetwork,
 ) -> Sequence[tuple[str, nn.Module, tuple[Tensor, ...], list[str], list[str], dict[str, dict[int, str]]]]:
     """Returns for each graph: name, module, inputs, their names, names of the outputs, and axes that vary."""
     shape = reader.shape
@@ -99,9 +119,15 @@ def _graphs(
     across = torch.zeros((shape.decoder_layers, 2, 2, shape.decoder_heads, 9, size))
     token, place = torch.ones((2, 1), dtype=torch.long), torch.tensor([4])
     seen = torch.zeros((2, 1, 1, 9))
+    if isinstance(reader, SceneNetwork):
+        states = torch.ones((1, len(STATES), 9, shape.width))
+        encoder = (SceneEncoderGraph(reader), (states,), ["states"])
+        varying = {"states": {2: "n"}, "across": {4: "n"}}
+    else:
+        encoder = (EncoderGraph(reader), (pieces,), ["pieces"])
+        varying = {"pieces": {0: "batch", 1: "n"}, "across": {2: "batch", 4: "n"}}
     return (
-        ("encoder", EncoderGraph(reader), (pieces,), ["pieces"], ["across"],
-         {"pieces": {0: "batch", 1: "n"}, "across": {2: "batch", 4: "n"}}),
+        ("encoder", *encoder, ["across"], varying),
         ("decoder", DecoderGraph(reader), (token, place, own, across, seen),
          ["token", "place", "own", "across", "seen"],
          ["scores", "kept"],
@@ -111,26 +137,21 @@ def _graphs(
 
 
 def export_checkpoints(
-    checkpoints: Mapping[str, Path],
-    folder: Path,
-    held_back: Sequence[Pair],
-    fillers: Sequence[str],
-    kept: Path | None = None,
+    checkpoints: Mapping[str, Path], folder: Path, fillers: Sequence[str], kept: Path | None
 ) -> None:
-    """Writes all files that the reader needs, from the checkpoints of one or two training runs.
+    """Writes all files that the reader needs, except its settings, from the checkpoints of training runs.
 
     Args:
-        checkpoints: folders with ``checkpoint.pt`` and ``pieces.txt``. The key of each folder ("" or
-            ``ROUTES``) is what follows "encoder" and "decoder" in the names of the network's files.
+        checkpoints: folders with ``checkpoint.pt`` and ``pieces.txt``, by what follows "encoder" and
+            "decoder" in the names of the files: "", ``ROUTES`` or ``SCENES``.
         folder: where the files are written.
-        held_back: pairs that the networks were not trained on, for the calibration.
         fillers: see ``filler_words``.
-        kept: the folder of an exported reader, which supplies the network that is not in ``checkpoints``;
-            None if ``checkpoints`` has all networks.
+        kept: the folder of an exported reader, which supplies the networks that are not in ``checkpoints``;
+            None if there is none.
 
     Raises:
-        UsageError: a checkpoint is missing or is of the wrong kind of network (for routes or single roads),
-            or the embeddings of the networks differ.
+        UsageError: a checkpoint is missing or is of another kind of network, or the embeddings of the
+            networks differ.
     """
     readers = {name: _trained(checkpoint, name) for name, checkpoint in checkpoints.items()}
     if kept and kept.resolve() != folder.resolve():
@@ -139,28 +160,36 @@ def export_checkpoints(
         export(reader, folder, name)
         pieces = read_vocabulary(checkpoints[name] / "pieces.txt")
         (folder / "pieces.txt").write_text("\n".join(pieces), encoding="utf-8")
+    give_states(folder / "encoder.onnx")
     (folder / "words.txt").write_text("\n".join(fillers), encoding="utf-8")
-    names = [name for name in ("", ROUTES) if name in checkpoints or kept]
-    share_embedding([folder / f"encoder{name}.onnx" for name in names])
+    share_embedding([path for name in ("", ROUTES) if (path := folder / f"encoder{name}.onnx").is_file()])
     (folder / "NOTICE").write_text(NOTICE, encoding="utf-8")
-    write_settings(folder, held_back)
 
 
-def _trained(checkpoint: Path, name: str) -> ReaderNetwork:
+def give_states(encoder: Path) -> None:
+    """Makes the outputs of the layers ``STATES`` outputs of an exported encoder."""
+    from onnx import TensorProto, helper, load, save
+
+    model = load(str(encoder), load_external_data=False)
+    given = {output.name for output in model.graph.output}
+    for layer in STATES:
+        name = f"/layers.{layer - 1}/last_norm/LayerNormalization_output_0"
+        if name not in given:
+            shape: list[str | int | None] = ["batch", "n", NetworkSizes().width]
+            model.graph.output.append(helper.make_tensor_value_info(name, TensorProto.FLOAT, shape))
+    save(model, str(encoder))
+
+
+def _trained(checkpoint: Path, name: str) -> ReaderNetwork | SceneNetwork:
     """Returns the network that a training run saved; ``name`` says which one it must be."""
     if not (checkpoint / "checkpoint.pt").exists():
         raise UsageError(f"there is no checkpoint.pt in {checkpoint}; train first")
     pieces = read_vocabulary(checkpoint / "pieces.txt")
     weights = torch.load(checkpoint / "checkpoint.pt", map_location="cpu", weights_only=True)["reader"]
     tokens = weights["bias"].shape[0]
-    is_of_routes = tokens > len(OF_ROADS)
-    if is_of_routes != (name == ROUTES):
-        what, todo = (
-            ("routes", "give it with --routes, or with --only routes")
-            if is_of_routes
-            else ("single roads", "'python -m roadgpt_training train --routes' trains one for routes")
-        )
-        raise UsageError(f"the network in {checkpoint} reads {what}; {todo}")
+    found = SCENES if "mixture" in weights else ROUTES if tokens > len(OF_ROADS) else ""
+    if found != name:
+        raise UsageError(f"the network in {checkpoint} reads {READS[found]}, not {READS[name]}")
     return network_of(weights, len(pieces), tokens)
 
 

@@ -7,7 +7,8 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import permutations
 
-from roadgpt.brief.plan import HALFWAY, half_of_route
+from roadgpt.brief.amount import amount_text
+from roadgpt.brief.plan import HALFWAY, SCENE, half_of_route
 from roadgpt.brief.readers.model.slots import NumberSlot
 from roadgpt.brief.readers.model.vocabulary import (
     FACTORS,
@@ -21,6 +22,8 @@ from roadgpt.brief.readers.model.vocabulary import (
     OF_ORDER,
     ONE,
     ORDER,
+    RAINS,
+    SCALES,
     SIGNS,
     SLOPES,
     SLOT_TOKENS,
@@ -31,10 +34,17 @@ from roadgpt.brief.readers.model.vocabulary import (
     exact_factor,
     value_of,
 )
+from roadgpt.brief.scene import WEATHER
 
 PIECE = re.compile(
-    r"//|\|\||![a-z]+|(?:left|right)(?:\+(?:right|straight))+|[a-z_]+\(|[a-z_]+=|x(?=-?[\d.])|half[12]|\.\.|-?\d+(?:\.\d+)?|[a-z_]+|[;|):,=+]|-(?=\d)"
+    r"//|\|\||&&|![a-z]+|(?:left|right)(?:\+(?:right|straight))+|[a-z_]+\(|[a-z_]+=|x(?=-?[\d.])|half[12]|\.\.|-?\d+(?:\.\d+)?|[a-z_]+|[;|):,=+]|-(?=\d)"
 )
+UNSAID = {
+    **RAINS,
+    **{name: f"{name} {amount_text(amount)}" for name, amount in WEATHER.items()},
+    "slippery s=": "slippery mu=0.3 s=",
+}
+"""What plans have where a text gives no number, by what stands in the tokens."""
 LISTED = re.compile(r",(?=\s*-?\d)")
 """A comma between numbers of a list; it has no token, so the numbers directly follow each other."""
 NUMERIC = re.compile(r"-?\d+(?:\.\d+)?")
@@ -51,6 +61,8 @@ def tokens_of(plan: str, slots: Sequence[NumberSlot], compared: Compared | None 
     taken: dict[int, str] = {}
     known = compared.plain if compared else frozenset()
     line = WAYS.sub(lambda ways: ways[0].replace("+", " "), _with_halfway(plan))
+    for token, said in UNSAID.items():
+        line = line.replace(said, token)
     for piece in PIECE.findall(LISTED.sub(" ", line)):
         if NUMERIC.fullmatch(piece):
             if out[-1] == "x" and key in MEASURED:
@@ -58,7 +70,8 @@ def tokens_of(plan: str, slots: Sequence[NumberSlot], compared: Compared | None 
                 out.pop()
             else:
                 is_count = out[-1] in ("x", *NOUNS, *KINDS, *NUMBERS)
-                found = _number_tokens(piece, "" if is_count else key, slots, taken)
+                said = f"{float(piece) / SCALES[key]:.1f}" if key in SCALES else piece
+                found = _number_tokens(said, "" if is_count else key, slots, taken)
                 is_said = found is not None and (found[-1] in SLOT_TOKENS or found[-1] in known)
                 if compared and key in KEYS and not (is_count or is_said or "roundabout" in out):
                     sign, value = ["-"] * piece.startswith("-"), abs(float(piece))
@@ -74,9 +87,11 @@ def tokens_of(plan: str, slots: Sequence[NumberSlot], compared: Compared | None 
             continue
         if (piece.endswith("=") and len(piece) > 1) or piece in MEASURED:
             key = piece
+        elif piece in WEATHER:
+            key = f"{piece}="
         elif piece not in ("..", "=", "+", "-", "x", *SLOPES):
             key = ""
-        out.append(ORDER if piece in OF_ORDER else piece)
+        out.append(ORDER if piece in OF_ORDER and SCENE not in out else piece)
     return out
 
 

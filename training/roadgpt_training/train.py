@@ -16,16 +16,19 @@ import torch
 from torch import nn
 from torch.nn import functional
 
-from roadgpt.brief.readers.model.vocabulary import OF_ROADS, TOKENS
+from roadgpt.brief.readers.model import WEIGHTS
+from roadgpt.brief.readers.model.neural_network import SCENES
 from roadgpt.errors import UsageError
-from roadgpt_training.data import SHARES, SHARES_OF_ROUTES, Numbers, training_batches
+from roadgpt_training.data import TOKENS_OF, Numbers, training_batches
 from roadgpt_training.feed import fed_batches
-from roadgpt_training.growing import deepened, grown
+from roadgpt_training.growing import deepened, grown, on_top
 from roadgpt_training.network import (
     DECODER,
     ENCODER,
+    STATES,
     NetworkSizes,
     ReaderNetwork,
+    SceneNetwork,
     layers_of,
     load_minilm,
     network_of,
@@ -77,8 +80,10 @@ class TrainingSettings:
     """Number of processes that train in parallel and average their weights at each checkpoint (local SGD)."""
     rank: int = 0
     """Number of this process, from 0; the process 0 writes the checkpoints."""
-    is_of_routes: bool = False
-    """True for the network that reads routes and maps, which learns from other pairs."""
+    network: str = "roads"
+    """What the network reads: "roads", "routes" (and maps) or "scenes"; it learns from other pairs for each.
+    The network for scenes stands on the installed network for roads, which stays as it is.
+    """
 
 
 def train(
@@ -112,14 +117,18 @@ def train(
     if checkpoint.exists():
         state = torch.load(checkpoint, map_location="cpu", weights_only=True)
     reader = _started(state.get("reader"), weights, pieces, plan).to(device)
+    if isinstance(reader, SceneNetwork):
+        below = network_of(_tensors(WEIGHTS, ""), len(pieces), len(TOKENS_OF["roads"]))
+        reader.stands_on(below.to(device).requires_grad_(False))
     optimiser = _optimiser(reader, plan)
     if state:
         optimiser.load_state_dict(state["optimiser"])
     first = int(state.get("step", 0))
     # each start has its own stream, so that a resumed training does not see the same pairs again
     seed = (plan.seed * 1_000_003 + first) * 16 + plan.rank
-    shares = SHARES_OF_ROUTES if plan.is_of_routes else SHARES
-    make = partial(training_batches, hand=hand, pieces=pieces, shares=shares, size=plan.size, pool=POOL)
+    make = partial(
+        training_batches, hand=hand, pieces=pieces, network=plan.network, size=plan.size, pool=POOL
+    )
     stream = fed_batches(plan.feeders, seed, make) if plan.feeders else make(seed)
     began = time.monotonic()
     losses: list[torch.Tensor] = []
@@ -140,26 +149,35 @@ def train(
 
 def _started(
     kept: dict[str, torch.Tensor] | None, weights: Path | None, pieces: Sequence[str], plan: TrainingSettings
-) -> ReaderNetwork:
+) -> ReaderNetwork | SceneNetwork:
     """Returns the network with the weights of a checkpoint, of an exported reader or of MiniLM.
+
+    A new network for scenes begins with the decoder of the one for roads, and a silent layer before it.
 
     Raises:
         UsageError: there are no such weights.
     """
-    tokens = len(TOKENS if plan.is_of_routes else OF_ROADS)
+    tokens = len(TOKENS_OF[plan.network])
     if kept is None and weights and weights.is_dir():
-        exported = exported_weights(weights, plan.ending)
-        kept = {name: torch.from_numpy(array) for name, array in exported.items()}
+        has_scenes = plan.network == "scenes" and (weights / f"decoder{SCENES}.onnx").is_file()
+        kept = _tensors(weights, SCENES if has_scenes else plan.ending)
         kept = grown(kept, tokens, plan.decoder_layers or layers_of(kept, DECODER), plan.seed)
-        kept = deepened(kept, plan.encoder_layers or layers_of(kept, ENCODER))
+        if plan.network == "scenes":
+            kept = kept if has_scenes else on_top(kept, len(STATES))
+        else:
+            kept = deepened(kept, plan.encoder_layers or layers_of(kept, ENCODER))
     if kept:
         return network_of(kept, len(pieces), tokens)
-    if weights is None:
+    if weights is None or plan.network == "scenes":
         raise UsageError("a new training starts from --weights, or from the reader that is --installed")
     layers = plan.decoder_layers or NetworkSizes().decoder_layers
     reader = ReaderNetwork(NetworkSizes(pieces=len(pieces), tokens=tokens, decoder_layers=layers))
     load_minilm(reader, weights, pieces)
     return reader
+
+
+def _tensors(weights: Path, ending: str) -> dict[str, torch.Tensor]:
+    return {name: torch.from_numpy(array) for name, array in exported_weights(weights, ending).items()}
 
 
 def _optimiser(reader: nn.Module, plan: TrainingSettings) -> torch.optim.Optimizer:
@@ -190,7 +208,7 @@ def _rate(step: int, plan: TrainingSettings) -> float:
 
 
 def _step(
-    reader: ReaderNetwork,
+    reader: ReaderNetwork | SceneNetwork,
     optimiser: torch.optim.Optimizer,
     batch: tuple[Numbers, Numbers],
     rate: float,

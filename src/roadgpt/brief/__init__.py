@@ -82,7 +82,7 @@ def read(
     The Brief is also checked for contradictions and against the limits given here (see ``check``).
 
     Args:
-        words: the description, up to 2,000 characters.
+        words: the description, up to 6,000 characters.
         reader: name of an installed reader, or 'model:FOLDER' for the model reader with weights in FOLDER.
         map_size: side of the square map that has to hold the road, in metres; None skips this check.
         min_radius: radius of the tightest turn allowed, in metres.
@@ -125,7 +125,8 @@ def read(
     is_road = not brief.junctions and brief.map is None
     if reader != PLAN:
         brief = with_driving_side(brief, words)
-    return brief.model_copy(update={"motorway": True}) if is_road and says_motorway(words) else brief
+    is_motorway = is_road and brief.surroundings is None and says_motorway(words)
+    return brief.model_copy(update={"motorway": True}) if is_motorway else brief
 
 
 def _doubted(error: BriefError, brief: Brief) -> BriefError:
@@ -150,7 +151,7 @@ def alternatives(
     can satisfy are left out.
 
     Args:
-        words: the description, up to 2,000 characters.
+        words: the description, up to 6,000 characters.
         number: the largest number of readings to return.
         reader: name of an installed reader.
         map_size: side of the square map in metres; None skips the check whether the road fits.

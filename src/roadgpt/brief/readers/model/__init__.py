@@ -18,9 +18,10 @@ from roadgpt.brief.feasible import is_possible
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import plan
 from roadgpt.brief.readers.model.before import COMPANIONS, asks_for_a_closed_loop, negative_number
-from roadgpt.brief.readers.model.neural_network import NeuralNetwork
+from roadgpt.brief.readers.model.neural_network import SCENES, NeuralNetwork
 from roadgpt.brief.readers.model.number_words import COUNTED, plain
 from roadgpt.brief.readers.model.ring_sizes import with_diameters
+from roadgpt.brief.readers.model.scenes import joined, not_used, read_told
 from roadgpt.brief.readers.model.slots import SlottedText, Word, slot_name, slotted
 from roadgpt.brief.readers.model.trained import (
     ANY_WORLD,
@@ -44,6 +45,9 @@ from roadgpt.reading import read_json, read_text
 WEIGHTS = Path(__file__).parent / "weights"
 FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json")
 NOT_ONE_ROAD = "this could not be read as one road; use shorter sentences"
+SHORT = 40
+"""The number of words up to which a description without a scene is looked through for words that its plan
+does not depend on."""
 NEVER = 2.0  # a probability that no refusal reaches
 LIKELY = 2.5  # difference of score to another plan of changes that may be meant
 CERTAIN = 0.8  # the probability of a refusal from which no other reading is taken
@@ -98,15 +102,48 @@ class ModelReader:
         """Returns the Brief of a description; raises TooMuchError, with the Brief, if the road is too large
         for the usual map of 250 m, and BriefError if the description cannot be read."""
         text = _text(words)
-        trained, found = chosen(self.roads, self.routes, words, text)
+        told = self._told(text)
+        if told is not None and told.refusal.startswith("!contradiction"):
+            raise refused(told.refusal)
+        is_told = told is not None and told.asks not in (None, Brief())
+        trained, found = self._plans(words, text, is_told)
         if not found:
             raise BriefError(NOT_ONE_ROAD)
         draft = most_plausible(found)
         if draft.asks is not None and draft.asks.map is None and asks_for_a_closed_loop(words):
             raise refused("!impossible loop")
-        brief = self._brief(words, text, draft, trained)
+        if told is None or told.asks is None or not is_told:
+            brief = self._brief(words, text, draft, trained)
+        elif draft.refusal.startswith(("!nonsense", "!unclear")):  # the text tells a scene and no road
+            brief = Brief(words=words, confidence=self._sure_of(told, text))
+        else:
+            brief = self._brief(words, text, draft, trained)
+            brief = brief.model_copy(update={"confidence": min(brief.confidence, self._sure_of(told, text))})
+        if told is not None and told.asks is not None and (is_told or len(text.words) > SHORT):
+            brief = joined(
+                brief, told.asks, tuple(dict.fromkeys(not_used(text, draft.tokens, told.asks, told.tokens)))
+            )
         is_sure = brief.confidence >= SURE
         return brief if is_sure else brief.model_copy(update={"other": _other(found, brief, text)})
+
+    def _told(self, text: SlottedText) -> ScoredPlan[Brief] | None:
+        """Returns what is told beside the shape of the road; None if the weights read no scenes."""
+        if self.scenes is None:
+            return None
+        found = scored_plans(self.scenes.network, text, self.scenes.refuse_from, read_told)
+        return found[0] if found else None
+
+    def _sure_of(self, told: ScoredPlan[Brief], text: SlottedText) -> float:
+        assert self.scenes is not None
+        return self.scenes.confidence(told, text, ())
+
+    def _plans(
+        self, words: str, text: SlottedText, is_told: bool
+    ) -> tuple[Trained, tuple[ScoredPlan[Brief], ...]]:
+        """Returns the network that reads the road of a description, and its plans, the likeliest first."""
+        if is_told and self.routes is not None:
+            return self.routes, self.routes.plans(text)
+        return chosen(self.roads, self.routes, words, text)
 
     def read_change(self, words: str, key: Callable[[str], str]) -> ChangeReading:
         """Returns what a change request asks for, as a plan; raises BriefError if the network wrote none that
@@ -202,6 +239,16 @@ class ModelReader:
             return None
         fillers = self._fillers | set(map(plain, COMPANIONS))
         return self._trained(ROUTES, self._settings.get("routes", {}), fillers)
+
+    @cached_property
+    def scenes(self) -> Trained | None:
+        """The network that reads scenes, on the encoder of ``roads``; None if the folder has none."""
+        if not (self.folder / f"encoder{SCENES}.onnx").is_file():
+            return None
+        settings = self._settings.get("scenes", {})
+        network = NeuralNetwork(self.folder, SCENES, self.roads.network)
+        weights = settings.get("confidence", {"bias": 3.0})
+        return Trained(network, settings.get("refuse_from", 0.5), weights, frozenset())
 
     def _trained(self, name: str, settings: dict[str, Any], fillers: frozenset[str]) -> Trained:
         weights = settings.get("confidence", {"bias": 0.0})

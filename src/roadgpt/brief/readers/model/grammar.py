@@ -135,8 +135,8 @@ def pushed(stack: Stack, token: str) -> Stack:
 
 UNSAID = {"deg=": FIXED, "angle=": FIXED, "turning=": ("180",), "steepest=": ("4", "5")}
 """Numbers that a plan may contain although they are not in the text, by plan key, if words imply them."""
-ALWAYS = {"angle": FIXED, "slope": ("1",), "climb=": ("0",)}
-"""Numbers that a plan may contain whatever the text says, by plan key: a right angle, one percent."""
+ALWAYS = {"angle": FIXED, "slope": ("1",), "climb=": ("0",), **dict.fromkeys(("v=", "dv=", "lead="), ("0",))}
+"""Numbers that a plan may contain whatever the text says, by plan key: a right angle, one percent, rest."""
 COUNTS = tuple(str(number) for number in range(LARGEST_SEEN + 1))
 BOUND, MINUS = "..", "-"
 LEAST = {"arms=": 3}  # "a two-lane roundabout" has no two arms
@@ -187,11 +187,16 @@ class Numbers:
         """Returns a key and its amount, such as "len=60"; never written if no number suits the key.
 
         The amount is a number, a bound or a range, and with ``is_signed`` also a negative number."""
-        amount = Symbol(
-            lambda: [BOUND, *self.of(key), *([MINUS] if is_signed else [])],
-            lambda token: self._after_begin_of_amount(key, token),
-        )
+        amount = self.amount(key, is_signed)
         return Symbol(lambda: [key] if self.of(key) else [], lambda token: (amount,))
+
+    def amount(self, key: str, is_signed: bool = False, may_be_empty: bool = False) -> Symbol:
+        """Returns an amount as ``keyed`` has it, without the key."""
+        return Symbol(
+            lambda: [BOUND, *self.of(key), *([MINUS] if is_signed else [])] if self.of(key) else [],
+            lambda token: self._after_begin_of_amount(key, token),
+            may_be_empty,
+        )
 
     def percents(self) -> list[str]:
         """Returns the numbers of the text that can be percentages."""
@@ -255,21 +260,18 @@ class PlanAutomaton:
         slots: the numbers of the text.
         said: the words of the text.
         evidence: which numbers the words may imply; None allows all numbers.
-        is_change: whether the text is a change request instead of a description."""
+        whole: returns the symbol for what is written."""
 
     def __init__(
         self,
         slots: Sequence[NumberSlot],
         said: frozenset[str],
         evidence: Evidence | None = None,
-        is_change: bool = False,
+        whole: Callable[[Numbers], Symbol] | None = None,
     ) -> None:
-        numbers = Numbers(slots, said, evidence or Evidence())
-        if is_change:
-            whole = change_request(numbers)
-        else:
-            whole = _description(numbers)
-        self._stack: Stack = (any_of(*_refusals(), whole), one_of(END))
+        asked = (whole or description)(Numbers(slots, said, evidence or Evidence()))
+        first = any_of(*_refusals(), asked)
+        self._stack: Stack = (replace(first, may_be_empty=asked.may_be_empty), one_of(END))
 
     def allowed(self) -> list[int]:
         """Returns the indices of all tokens that may come next."""
@@ -290,7 +292,8 @@ def _refusals() -> tuple[Symbol, ...]:
     )
 
 
-def _description(numbers: Numbers) -> Symbol:
+def description(numbers: Numbers) -> Symbol:
+    """Returns the symbol for a road, a route or a map."""
     clause = _clause(numbers)
     wishes = in_order(
         SHARPNESS,

@@ -10,8 +10,15 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
-from roadgpt.brief.readers.model.grammar import END, Evidence, PlanAutomaton
+from roadgpt.brief.readers.model.grammar import (
+    END,
+    Evidence,
+    PlanAutomaton,
+    change_request,
+    description,
+)
 from roadgpt.brief.readers.model.onnx_runtime import onnxruntime
+from roadgpt.brief.readers.model.scene_grammar import scene
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, REFUSALS, TOKENS
 from roadgpt.errors import PartError
@@ -20,7 +27,12 @@ from roadgpt.reading import read_text
 UNKNOWN_PIECE = "[UNK]"
 LONGEST = 40  # letters; anything longer is not split
 WINDOW = 126
-"""The largest number of pieces of a text that are read, without the special pieces at its two ends."""
+"""The largest number of pieces that are encoded together, without the special pieces at the two ends."""
+ENDS = frozenset(".;!?")
+SCENES = "_scenes"
+"""What follows 'encoder' and 'decoder' in the file names of the network that reads scenes."""
+MOST_CHUNKS = 32
+"""The largest number of chunks whose encoding is kept."""
 
 
 class WordPieces:
@@ -30,16 +42,21 @@ class WordPieces:
         self.number = {piece: index for index, piece in enumerate(pieces)}
         self._split = lru_cache(maxsize=4096)(self._pieces)
 
-    def encode(self, words: Iterable[str]) -> tuple[list[int], list[int]]:
-        """Returns the numbers of all pieces, and for each piece the index of its word (-1 for the special end
-        pieces)."""
-        numbers, of_word = [self.number["[CLS]"]], [-1]
-        for index, word in enumerate(words):
-            for piece in self._split(word):
-                if len(numbers) <= WINDOW:
-                    numbers.append(piece)
-                    of_word.append(index)
-        return [*numbers, self.number["[SEP]"]], [*of_word, -1]
+    def encode(self, words: Iterable[str]) -> list[list[int]]:
+        """Returns the numbers of all pieces, with a special piece at either end, in chunks of at most
+        ``WINDOW`` pieces. A chunk ends with a sentence where one of its two last thirds has the end of one.
+        """
+        chunks, chunk, sentence = list[list[int]](), list[int](), 0
+        for word in words:
+            pieces = self._split(word)
+            if len(chunk) + len(pieces) > WINDOW:
+                cut = sentence if sentence > WINDOW // 3 else len(chunk)
+                chunks.append(chunk[:cut])
+                chunk, sentence = chunk[cut:], 0
+            chunk += pieces[:WINDOW]
+            sentence = len(chunk) if word in ENDS else sentence
+        first, last = self.number["[CLS]"], self.number["[SEP]"]
+        return [[first, *each, last] for each in (*chunks, chunk)]
 
     def _pieces(self, word: str) -> tuple[int, ...]:
         if word in self.number:
@@ -85,10 +102,11 @@ class WrittenPlan:
     is_done: bool = False
 
     @classmethod
-    def of(cls, text: SlottedText) -> Self:
-        """Returns an empty plan for a description."""
-        said = frozenset(word.text for word in text.words)
-        return cls(PlanAutomaton(text.slots, said, Evidence.of(text.text), text.is_change))
+    def of(cls, text: SlottedText, is_scene: bool) -> Self:
+        """Returns an empty plan for a text."""
+        whole = scene if is_scene else change_request if text.is_change else description
+        evidence = Evidence() if is_scene else Evidence.of(text.text)
+        return cls(PlanAutomaton(text.slots, frozenset(word.text for word in text.words), evidence, whole))
 
     @property
     def score(self) -> float:
@@ -108,10 +126,14 @@ class WrittenPlan:
 class NeuralNetwork:
     """The trained network, which reads a description and writes plans."""
 
-    def __init__(self, folder: Path, name: str = "") -> None:
-        """Takes the folder of the weights, and what follows 'encoder' and 'decoder' in the file names."""
-        self.folder, self.name = folder, name
-        self.pieces = WordPieces(read_text(folder / "pieces.txt").split("\n"))
+    def __init__(self, folder: Path, name: str = "", below: Self | None = None) -> None:
+        """Takes the folder of the weights, what follows 'encoder' and 'decoder' in the file names, and the
+        network whose encoder comes before this one's, if there is one."""
+        self.folder, self.name, self.below = folder, name, below
+        self.pieces: WordPieces = (
+            below.pieces if below else WordPieces(read_text(folder / "pieces.txt").split("\n"))
+        )
+        self.encoded = lru_cache(maxsize=MOST_CHUNKS)(self._encoded)
 
     @cached_property
     def _encoder(self) -> onnxruntime.InferenceSession:
@@ -137,14 +159,27 @@ class NeuralNetwork:
         """Returns the keys and values of a description, to which the decoder attends.
 
         Their shape is (layers, 2, 1, heads, pieces, head size)."""
-        numbers, _ = self.pieces.encode(word.text for word in text.words)
-        out: Array = self._encoder.run(None, {"pieces": np.array([numbers], dtype=np.int64)})[0]
-        return out
+        chunks = self.chunks(text)
+        if self.below is None:
+            return np.concatenate([self.encoded(chunk)[0] for chunk in chunks], axis=4)
+        states = np.concatenate([self.below.encoded(chunk)[1] for chunk in chunks], axis=2)
+        across: Array = self._encoder.run(None, {"states": states})[0]
+        return across
+
+    def chunks(self, text: SlottedText) -> tuple[tuple[int, ...], ...]:
+        """Returns the numbers of the pieces of a text, chunk by chunk."""
+        return tuple(map(tuple, self.pieces.encode(word.text for word in text.words)))
+
+    def _encoded(self, chunk: tuple[int, ...]) -> tuple[Array, Array]:
+        """Returns the keys and values of a chunk, and the outputs of the layers that the network for scenes
+        reads, of shape (1, layers, pieces, width); of older weights, no layers."""
+        across, *states = self._encoder.run(None, {"pieces": np.array([chunk], dtype=np.int64)})
+        return across, np.stack(states, axis=1) if states else np.zeros((1, 0, len(chunk), 1), np.float32)
 
     def chances_of(
         self, texts: Sequence[SlottedText], tokens: Sequence[str], allowed: SlottedText
     ) -> tuple[Array, Array]:
-        """Returns how likely one plan is for several variants of a text.
+        """Returns how likely one plan is for several variants of a text, each of one chunk.
 
         The words and numbers of ``allowed`` determine which tokens are allowed.
 
@@ -152,14 +187,14 @@ class NeuralNetwork:
             Two arrays of shape (texts, tokens + 1), for each token of the plan and its end: the
             log-probability, and its lead over the likeliest other token (negative if the other is likelier).
         """
-        rows = [self.pieces.encode(word.text for word in text.words)[0] for text in texts]
+        rows = [self.chunks(text)[0] for text in texts]
         pieces = np.zeros((len(rows), max(map(len, rows))), dtype=np.int64)
         for row, numbers in enumerate(rows):
             pieces[row, : len(numbers)] = numbers
         across = self._encoder.run(None, {"pieces": pieces})[0]
         seen = np.where(pieces == 0, np.float32(-1e4), np.float32(0))[:, None, None, :]
         own = np.repeat(_nothing(across[:, :, :1]), len(rows), axis=2)
-        writer = WrittenPlan.of(allowed).writer
+        writer = WrittenPlan.of(allowed, self.below is not None).writer
         last = START
         logs, leads = list[Array](), list[Array]()
         for place, word in enumerate((*tokens, END)):
@@ -183,7 +218,7 @@ class NeuralNetwork:
     ) -> tuple[WrittenPlan, ...]:
         """Returns the likeliest plans for a description, best first, from a beam search; for ``refuse_from``
         see ``scored_plans``."""
-        drafts, done = [WrittenPlan.of(text)], list[WrittenPlan]()
+        drafts, done = [WrittenPlan.of(text, self.below is not None)], list[WrittenPlan]()
         own = _nothing(across)
         for place in range(MOST_TOKENS):
             scores, own = self._step(drafts, place, own, across)
@@ -212,7 +247,7 @@ class NeuralNetwork:
 
     def refusal(self, text: SlottedText) -> float:
         """Returns the probability that the network writes a refusal as the first token."""
-        across, draft = self.encode(text), WrittenPlan.of(text)
+        across, draft = self.encode(text), WrittenPlan.of(text, self.below is not None)
         scores, _ = self._step([draft], 0, _nothing(across), across)
         return float(np.exp(_log_chances(scores[0], draft.writer.allowed())[REFUSED]).sum())
 
@@ -222,7 +257,7 @@ class NeuralNetwork:
         """Returns a plan sampled token by token, but never a refusal.
 
         A higher temperature gives more varied plans."""
-        draft, own = WrittenPlan.of(text), _nothing(across)
+        draft, own = WrittenPlan.of(text, self.below is not None), _nothing(across)
         for place in range(MOST_TOKENS):
             scores, own = self._step([draft], place, own, across)
             logs = _log_chances(scores[0], draft.writer.allowed())

@@ -20,7 +20,7 @@ LEFT, RIGHT = word_set("left"), word_set("right")
 TURNS, ONE_TURN = word_set("turns"), word_set("one_turn")
 COUNTED = TURNS | word_set("shapes") | {"curve"}
 """Nouns that a number can count."""
-Unit = Literal["metres", "percent", "degrees", "kmh", ""]
+Unit = Literal["metres", "percent", "degrees", "kmh", "mps2", ""]
 UNITS: dict[tuple[str, ...], tuple[Unit, float]] = {
     tuple(word.split("_")): (unit, factor)
     for unit, factor, words in TABLE["units"]["rows"]

@@ -35,6 +35,7 @@ from roadgpt.brief.readers.model.number_words import (
     numbers_in_words,
     plain,
 )
+from roadgpt.brief.readers.model.set_aside import stands_for
 
 LARGEST_SEEN = 20
 """The largest number without a unit that remains as digits in the text for the model. Larger ones become
@@ -44,6 +45,10 @@ SIDES = LEFT | RIGHT | word_set("short_sides")
 STEEPEST = 45.0  # degrees: anything steeper is a turn, or nonsense that the network refuses itself
 AMBIGUOUS, MILLIONS, JOINTS = word_set("ambiguous"), word_set("millions"), word_set("joints")
 RATIO, TIMES, POINTS = word_set("ratio"), word_set("times"), word_set("points")
+SECONDS = word_set("seconds")
+SQUARED = (["s²"], ["s", "2"], ["s", "^", "2"], ["s", "/", "s"], ["sec", "2"], ["sec", "^", "2"])
+MOST_G = 1.5
+"""The largest number of which "g" is an acceleration; "50 g 3" is 50 m and a left turn of a rally."""
 RADIUS, LEADING_TO = word_set("radius"), word_set("leading_to")
 SLOPES, SLOPING = word_set("slopes"), word_set("sloping")
 BETWEEN, SKIPPED = word_set("before_slope"), word_set("skipped")
@@ -77,9 +82,13 @@ def unit_at(tokens: Sequence[str], at: int) -> tuple[Unit, float, int] | None:
         found = UNITS.get(tuple(tokens[at : at + size]))
         if found:
             unit, factor = found
-            over, time = [*tokens[at + size : at + size + 2], "", ""][:2]
-            if unit == "metres" and over == "/" and time in TIMES:
-                return "kmh", 1.0, size + 2  # a speed
+            over, time, *more = [*tokens[at + size : at + size + 4], "", "", "", ""][:4]
+            if unit == "metres" and over == "/":
+                squared = next((each for each in SQUARED if [time, *more][: len(each)] == each), None)
+                if squared:
+                    return "mps2", factor, size + 1 + len(squared)
+                if time in TIMES:
+                    return "kmh", factor * (3.6 if time in SECONDS else 0.001), size + 2
             return unit, factor, size
     return None
 
@@ -93,13 +102,16 @@ def take_unit(number: Number, tokens: list[str]) -> None:
         if skip and (at >= len(tokens) or tokens[at] not in ("-", "'")):
             break
         found = unit_at(tokens, at + skip)
-        if found and not (tokens[at + skip] in ("º", "a", "e") and number.value < 10):
+        is_weight = tokens[at + skip : at + skip + 1] == ["g"] and (
+            number.value > MOST_G or number.value.is_integer()
+        )
+        if found and not (tokens[at + skip] in ("º", "a", "e") and number.value < 10) and not is_weight:
             unit, factor, size = found
             number.value, number.unit = round(number.value * factor, 1), unit
             number.spread *= factor
             number.last, number.is_bare, number.factor = at + skip + size - 1, False, factor
             return
-    number.value = round(number.value, 1)
+    number.value = round(number.value, 2)
 
 
 def share_units(numbers: list[Number], tokens: list[str]) -> None:
@@ -426,8 +438,8 @@ class Word:
 class NumberSlot:
     """A number that a slot stands for.
 
-    The value is in metres, degrees or percent, rounded to one decimal; ``unit`` is empty if the text gives no
-    unit. A speed has the unit "kmh" and the value that the text gives, even in miles per hour."""
+    The value is in metres, degrees, percent, km/h or m/s2, rounded to one decimal; ``unit`` is empty if the
+    text gives no unit, and the value has two decimals then."""
 
     value: float
     unit: Unit
@@ -645,6 +657,11 @@ def _replaced(tokens: list[str], said: list[str], numbers: list[Number], is_chan
             out.append(Word(tokens[at], said[at]))
             at += 1
             continue
+        aside = stands_for(tokens, number.first, number.last) if number.is_bare else ""
+        if aside:
+            out.append(Word(aside, ""))
+            at = number.last + 1
+            continue
         spoken = " ".join(said[number.first : number.last + 1])
         is_figure = number.is_bare and number.first == number.last and tokens[at].isdigit()
         after = "".join(tokens[number.last + 1 : number.last + 2])
@@ -670,7 +687,7 @@ def _measure(number: Number, spoken: str, slots: list[NumberSlot], is_change: bo
         return [Word("[unused20]", spoken)]
     out: list[Word] = []
     for end in ends:
-        value = round(number.value + end, 1)
+        value = round(number.value + end, 1 if number.unit else 2)
         out += [Word("to", "")] if out else []
         out.append(Word(slot_name(len(slots)), spoken))
         slots.append(NumberSlot(value, number.unit))

@@ -41,6 +41,7 @@ NEARLY = 0.7
 """By how much less the score of a plan may be that takes the place of one that contradicts itself."""
 ANY_WORLD = (None, 0.0)
 """No limit of the map and of radii: those of a World are checked in brief.read."""
+REFUSING = tuple((word,) for word in REFUSALS)
 Asked = TypeVar("Asked")
 
 
@@ -78,7 +79,7 @@ def scored_plans(
     found: list[ScoredPlan[Asked]] = []
     for written in network.write(network.encode(text), text, refuse_from):
         tokens, asks = written.tokens, None
-        if tokens[0] not in REFUSALS:
+        if tokens[:1] not in REFUSING:
             try:
                 asks = read(plan_of(tokens, text.slots))
             except RoadGPTError:
@@ -214,6 +215,8 @@ class Trained:
         both. If the plan changes when all such words are left out, a word that alone restores the plan counts
         as used. A word in letters of another script than Latin is in none of the languages that are read: it
         never counts as used, even if the plan happens to be less likely without it."""
+        if len(self.network.chunks(text)) > 1:
+            return frozenset()
         content = [place for place, word in enumerate(text.words) if _is_content(word, self.fillers)]
         foreign = frozenset(place for place in content if not _is_latin(text.words[place].text))
         tried = [place for place in content if place not in foreign][:MOST_WORDS]

@@ -94,6 +94,8 @@ FIXED = ("15", "30", "45", "60", "90", "120", "135", "180")
 """Angles in degrees that words imply without naming them: a kink, a dog-leg, a right angle."""
 NUMBERS = [*map(str, range(LARGEST_SEEN + 1)), *(each for each in FIXED if int(each) > LARGEST_SEEN)]
 ROUNDABOUT = "roundabout"
+RAINS = {"drizzle": "rain ..2.5", "downpour": "rain 7.6.."}
+"""Tokens of rains that words tell without a number, with what stands in plans."""
 SLOT_TOKENS = [f"[{index + 1}]" for index in range(SLOTS)]
 NOUNS = ["turn", "straight", "start", "end", "road"]
 MEASURED = {"angle": "degrees", "radius": "metres", "length": "metres", "slope": "percent", "climb": "metres"}
@@ -113,6 +115,8 @@ TOKENS: tuple[str, ...] = tuple(read_text(Path(__file__).with_name("tokens.txt")
 OF_ROADS = TOKENS[: TOKENS.index("//")]
 """All tokens of single roads and changes. Networks for single roads know no other tokens and cannot write a
 plan that needs one."""
+OF_ROUTES = TOKENS[: TOKENS.index("&&")]
+"""All tokens of the network for routes and maps."""
 NUMBER_OF = {token: index for index, token in enumerate(TOKENS)}
 WAYS = re.compile(r"(?<=route=)(?:left|right|straight)(?:[+ ](?:left|right|straight))*")
 """The ways of a route through a map. As tokens they follow each other without a "+"."""
@@ -120,14 +124,23 @@ UNIT_OF = {
     "deg=": "degrees", "angle=": "degrees", "r=": "metres", "d=": "metres",
     "len=": "metres", "taper=": "metres", "climb=": "metres",
     "turning=": "degrees", "pct=": "percent", "steepest=": "percent", **MEASURED,
+    **dict.fromkeys(("v=", "dv=", "to=", "lat=", "speed="), "kmh"),
+    **dict.fromkeys(("gap=", "lead=", "s=", "away=", "shift=", "t=", "dist=", "fog="), "metres"),
+    **dict.fromkeys(("overlap=", "impact="), "percent"), **dict.fromkeys(("decel=", "accel="), "mps2"),
+    **dict.fromkeys(("thw=", "time=", "ttc=", "for=", "mu=", "rain="), ""),
 }  # fmt: skip
-"""The unit of the number after a key; numbers after other keys are counts."""
+"""The unit of the number after a key, empty where a text gives it in a unit that is not read, such as
+seconds; numbers after other keys are counts."""
+SCALES = {"lat=": 1 / 3.6}
+"""What a value of a text is multiplied by in plans: speeds sideways are in m/s."""
 
 
 def plan_of(tokens: Iterable[str], slots: Sequence[NumberSlot]) -> str:
     """Returns the plan that the tokens represent, with the values of the slots filled in."""
     out: list[str] = []
+    key = ""
     for word in with_values(tokens, slots):
+        key = word if word in UNIT_OF else key if word in ("..", "-") or word in SLOT_TOKENS else ""
         index = SLOT_TOKENS.index(word) if word in SLOT_TOKENS else SLOTS
         value = slots[index].value if index < len(slots) else 0.0
         percent = out[-1] if out and out[-1] in PERCENTS else ""
@@ -135,7 +148,9 @@ def plan_of(tokens: Iterable[str], slots: Sequence[NumberSlot]) -> str:
             share = value / 100
             out[-1:] = ["x", figure({"x+": 1 + share, "x-": 1 - share, "x%": share}[percent], 4)]
         elif word in SLOT_TOKENS:
-            out.append(figure(value, 1))
+            out.append(figure(value * SCALES.get(key, 1), 1 if slots[index].unit else 2))
+        elif word in RAINS:
+            out.append(RAINS[word])
         elif word in (";", "|", ")", ","):
             out.append(word + " ")
         elif word == ORDER and out[-1:] == [":"]:
