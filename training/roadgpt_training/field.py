@@ -6,6 +6,7 @@ design speed and where one comes from. The networks for roads and routes write t
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -40,6 +41,8 @@ DOUBTFUL = frozenset(
      "sun", "rain", "fog"]
 )  # fmt: skip
 """Names in ``beside(...)`` of older pairs that do not tell which scene is meant."""
+KEPT = 50_000
+"""The largest number of plans whose parts are kept, because parting them takes longest."""
 JOINTS = (". ", ". ", "\n", "; ", " - ")
 LONGEST = 900
 """The most letters of two texts that are joined."""
@@ -49,36 +52,43 @@ def of_scene(pair: Pair) -> Pair | None:
     """Returns a pair with the part of its plan that the network for scenes writes; None if its plan does not
     tell that part.
     """
-    is_of_field = pair.family.startswith(FIELD)
-    if pair.plan.startswith(("!nonsense", "!unclear")):
-        return pair
-    if pair.is_refusal:
-        is_of_scene = is_of_field and pair.plan == "!contradiction"
-        return pair if is_of_scene else None if is_of_field else replace(pair, plan="")
-    brief = read_plan(pair.plan)
+    part = _scene_of(pair.plan, pair.family.startswith(FIELD))
+    return None if part is None else replace(pair, plan=part)
+
+
+@lru_cache(maxsize=KEPT)
+def _scene_of(line: str, is_of_field: bool) -> str | None:
+    if line.startswith(("!nonsense", "!unclear")):
+        return line
+    if line.startswith("!"):
+        return "" if not is_of_field else line if line == "!contradiction" else None
+    brief = read_plan(line)
     if not is_of_field:
-        names = [*names_in(pair.plan)]
+        names = [*names_in(line)]
         scenes = [NAMED[name] for name in names if name in NAMED]
         if len(scenes) > 1 or not DOUBTFUL.isdisjoint(names):
             return None
         brief = brief.model_copy(update={"scene": scenes[0] if scenes else Scene()})
-    kept = {name: getattr(brief, name) for name in OF_SCENES}
-    return replace(pair, plan=plan(Brief(**kept)))
+    return plan(Brief(**{name: getattr(brief, name) for name in OF_SCENES}))
 
 
 def of_road(pair: Pair) -> Pair | None:
     """Returns a pair of the field with the part of its plan that the networks for roads write; None if its
     plan does not tell that part.
     """
-    if pair.is_refusal:
-        return None if pair.plan == "!contradiction" else pair
-    brief = read_plan(pair.plan)
-    is_of_junctions = bool(brief.junctions) or brief.map is not None
+    part = _road_of(pair.plan)
+    return None if part is None else replace(pair, plan=part)
+
+
+@lru_cache(maxsize=KEPT)
+def _road_of(line: str) -> str | None:
+    if line.startswith("!"):
+        return None if line == "!contradiction" else line
+    brief = read_plan(line)
     free = {name: Brief.model_fields[name].get_default() for name in OF_SCENES}
-    if is_of_junctions:
+    if brief.junctions or brief.map is not None:
         free.pop("motorway")
-    road = normal(brief.model_copy(update=free))
-    return replace(pair, plan=plan(road))
+    return plan(normal(brief.model_copy(update=free)))
 
 
 def composed(pairs: Sequence[Pair], roads: Sequence[Pair], rng: np.random.Generator) -> Iterator[Pair]:

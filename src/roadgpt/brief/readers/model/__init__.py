@@ -17,7 +17,12 @@ import numpy as np
 from roadgpt.brief.feasible import is_possible
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import plan
-from roadgpt.brief.readers.model.before import COMPANIONS, asks_for_a_closed_loop, negative_number
+from roadgpt.brief.readers.model.before import (
+    COMPANIONS,
+    asks_for_a_closed_loop,
+    negative_number,
+    other_script,
+)
 from roadgpt.brief.readers.model.neural_network import SCENES, NeuralNetwork
 from roadgpt.brief.readers.model.number_words import COUNTED, plain
 from roadgpt.brief.readers.model.ring_sizes import with_diameters
@@ -48,6 +53,7 @@ NOT_ONE_ROAD = "this could not be read as one road; use shorter sentences"
 SHORT = 40
 """The number of words up to which a description without a scene is looked through for words that its plan
 does not depend on."""
+READABLE = "descriptions in English, German, French, Spanish and Italian are read"
 NEVER = 2.0  # a probability that no refusal reaches
 LIKELY = 2.5  # difference of score to another plan of changes that may be meant
 CERTAIN = 0.8  # the probability of a refusal from which no other reading is taken
@@ -306,6 +312,9 @@ def _text(words: str) -> SlottedText:
     if len(words) > MOST_CHARACTERS:
         letters = f"the description has {len(words)} letters"
         raise BriefError(f"{letters}; at most {MOST_CHARACTERS} are read, so shorten it")
+    script = other_script(words)
+    if script:
+        raise BriefError(f"this is written in {script} letters; {READABLE}")
     text = slotted(words)
     below = negative_number(text)
     if below:

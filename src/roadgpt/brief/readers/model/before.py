@@ -6,6 +6,8 @@ Grades and climbs may be negative, and a dash may be just punctuation, so only n
 certainly lengths, radii or counts are refused."""
 
 import re
+import unicodedata
+from collections import Counter
 from collections.abc import Sequence
 
 from roadgpt.brief.languages import TABLE, pattern_of, word_set
@@ -22,6 +24,15 @@ TELLING = [pattern_of(language, "routes", re.IGNORECASE) for language in TABLE["
 COMPANIONS = word_set("companions")
 MINUS, BEFORE_DASH, LENGTHS = word_set("minus"), word_set("before_dash"), word_set("lengths")
 NEAR = 4
+
+
+def other_script(words: str) -> str:
+    """Returns the name of the script in which more letters of a text are written than in Latin ones, such as
+    "Cyrillic"; empty if there is none."""
+    scripts = Counter(unicodedata.name(letter, "?").split()[0] for letter in words if letter.isalpha())
+    script, count = scripts.most_common(1)[0] if scripts else ("LATIN", 0)
+    is_other = script != "LATIN" and count > scripts["LATIN"]
+    return {"CJK": "Chinese", "?": "unknown"}.get(script, script.capitalize()) if is_other else ""
 
 
 def asks_for_a_closed_loop(words: str) -> bool:
