@@ -295,14 +295,14 @@ class AtCrossing:
         return sum(self.mover._ways[rows, self.mover._whole[rows, 0]] == self.way)
 
 
-@pytest.mark.parametrize("left", [32.0, 36.0, 40.0])
+@pytest.mark.parametrize("left", [34.0, 36.0, 38.0])
 def test_who_has_priority_gives_its_way_back_to_a_tested_car_that_drives_on(left):
-    """It has a grant when the tested car can no longer stop, 14 m before the junction with 13 m/s."""
+    """It has a grant when the tested car can no longer stop, 3 m before the junction with 6 m/s."""
     crossing = AtCrossing("yield", "left")
-    begin = crossing.line - 2.35 - 16.0
+    begin = crossing.line - 2.35 - 4.0
     crossing.enter(left, 10.0)
-    for tick in range(60):
-        car = crossing.car(begin + 13.0 * tick * STEP, 13.0)
+    for tick in range(100):
+        car = crossing.car(begin + 6.0 * tick * STEP, 6.0)
         assert not crossing.touches(crossing.mover.move(tick * STEP, car, NOBODY), car)
         assert tick > 0 or crossing.mover._whole[1, 2] == 1
 
