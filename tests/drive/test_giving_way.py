@@ -3,6 +3,7 @@ speed limits they keep."""
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,9 @@ import pytest
 from drive.test_keeping_distance import Watched
 from roadgpt.drive import Command, Drive, View, simulate
 from roadgpt.drive.drivers.reference import Reference
+from roadgpt.drive.driving_line import line_along, stations
+from roadgpt.drive.giving_way import GivingWay
+from roadgpt.drive.view import Other
 from roadgpt.network import Route, is_route
 from roadgpt.network.lanes import lanes_of
 from roadgpt.network.network import Leg
@@ -119,6 +123,22 @@ def test_who_is_hidden_for_a_moment_is_not_forgotten() -> None:
         assert drive.ended == "goal"
         assert (entered(drive, route) > 18.0) is bool(row)
     assert judge(route, drive, world).kept
+
+
+@pytest.mark.parametrize(("speed", "waits"), [(0.0, 2.0), (1.0, 30.0)])
+def test_who_is_beside_a_car_that_changes_lanes_does_not_keep_it_for_ever(speed: float, waits: float) -> None:
+    route, world = planned("| lanes=2 oneway len=300 // lane_change left")
+    giving_way = GivingWay(route, world, line_along(route, world.profile_of(route).middle(stations(route))))
+    ((begin, end, offset),) = giving_way._changes
+    x, y, _ = route.at((begin + end) / 2 - 1.0, offset)
+    other = Other("car", x, y, float(route.heading(begin)), speed, 4.7, 1.8)
+    view: Any = SimpleNamespace(
+        speed=0.0, s=(begin + end) / 2, t=offset - 2, dt=0.1, road=route, others=[other]
+    )
+    goes = [giving_way.behind(view) >= 0.0 for _ in range(600)]
+    first = goes.index(True)
+    assert 0.1 * first == pytest.approx(waits, abs=0.2)
+    assert all(goes[first:])
 
 
 @pytest.mark.parametrize("driver", ["reference", "lane_centring"])

@@ -256,6 +256,85 @@ def test_who_gives_way_lets_the_tested_car_pass_and_then_goes(speed):
     assert entered > crossing.start if speed else 3.0 < stood < 10.0
 
 
+class AtCrossing:
+    """Vehicles of the flow from one side and the tested car, which drives straight on across their way."""
+
+    def __init__(self, control, side):
+        self.own = stage(f"straight 100 // crossroads straight {control} // straight 100")
+        self.mover = IdmMover(self.own, "light", is_filled=False)
+        self.mover.comes_in = False
+        self.road, lanes = self.own.road, lanes_of(network_of(self.own.road, self.own.world))
+        self.line, self.t = self.road.passages[0].start, self.own.world.profile_of(self.road).middle(0.0)
+        own, ids = self.road.heading(self.line), self.mover.ids
+        self.way = next(
+            n for n, key in enumerate(ids)
+            if self.mover.lanes.junction[n] >= 0 and abs(lanes[key].turn) < 0.1
+            and np.sin(lanes[key].heading(0.0) - own) * {"left": -1, "right": 1}[side] > 0.9
+        )  # fmt: skip
+        self.lane = ids.index(lanes[ids[self.way]].predecessors[0])
+        self.mover.start(self.car(5.0, 0.0))
+
+    def car(self, s, speed):
+        x, y, _ = self.road.at(s, self.t)
+        return traffic.TestedCar(x, y, float(self.road.heading(s)), speed, s, self.t, 4.7, 1.86)
+
+    def enter(self, left, speed):
+        """Lets somebody in whose middle is ``left`` metres before the junction and who drives straight on."""
+        self.mover.enter(self.lane, self.mover.lanes.length[self.lane] - left, speed)
+        row = self.mover._rows[-1]
+        self.mover._ways[row, 1], self.mover._whole[row, 1] = self.way, 2
+
+    def touches(self, states, car):
+        box = corners(np.array([car.x, car.y, 0.0, car.heading, car.speed]), Size(4.7, 1.86, 1.5))
+        there = [n for n in range(len(states)) if not math.isnan(states[n, X])]
+        boxes = [shapely.Polygon(corners(states[n], self.mover.actors[n].size)) for n in there]
+        return any(each.intersects(shapely.Polygon(box)) for each in boxes)
+
+    def inside(self):
+        rows = self.mover._rows
+        return sum(self.mover._ways[rows, self.mover._whole[rows, 0]] == self.way)
+
+
+@pytest.mark.parametrize("left", [34.0, 36.0, 38.0])
+def test_who_has_priority_gives_its_way_back_to_a_tested_car_that_drives_on(left):
+    """It has a grant when the tested car can no longer stop, 3 m before the junction with 6 m/s."""
+    crossing = AtCrossing("yield", "left")
+    begin = crossing.line - 2.35 - 4.0
+    crossing.enter(left, 10.0)
+    for tick in range(100):
+        car = crossing.car(begin + 6.0 * tick * STEP, 6.0)
+        assert not crossing.touches(crossing.mover.move(tick * STEP, car, NOBODY), car)
+        assert tick > 0 or crossing.mover._whole[1, 2] == 1
+
+
+def test_a_tested_car_that_has_waited_for_30_s_is_let_in():
+    crossing = AtCrossing("yield", "left")
+    car, inside = crossing.car(crossing.line - 4.0, 0.0), []
+    for tick in range(500):
+        if tick % 25 == 0:
+            crossing.enter(50.0, 10.0)
+        crossing.mover.move(tick * STEP, car, NOBODY)
+        inside.append(crossing.inside())
+    free = np.convolve(np.array(inside) > 0, np.ones(60), "valid") == 0  # for 6 s from then on
+    assert not free[50:250].any()
+    assert free[300:].any()
+
+
+def test_a_tested_car_goes_in_its_turn_when_several_have_waited_for_the_same_one():
+    crossing = AtCrossing("none", "left")
+    mover, s = crossing.mover, crossing.line - 4.0
+    x, y, _ = crossing.road.at(crossing.line + 12.0, crossing.t)
+    crossing.enter(4.0, 0.0)
+    for tick in range(400):
+        goes = max(tick - 101, 0) * STEP  # 0.1 s after the way has become free
+        car = crossing.car(s + 0.75 * goes * goes, 1.5 * goes)
+        if car.s > crossing.line + 30.0:
+            break
+        blocks = body(x, y, 0.0, 0.0, 12.0, 12.0) if tick < 100 else NOBODY
+        assert not crossing.touches(mover.move(tick * STEP, car, blocks), car)
+        assert not crossing.inside() or car.s > crossing.line + 10.0
+
+
 def test_lights_never_show_green_to_ways_that_cross_and_opposite_arms_have_it_together():
     own = stage("straight 100 // crossroads left lights // straight 100")
     network = network_of(own.road, own.world)

@@ -126,7 +126,7 @@ class GivingWay:
     def behind(self, view: View) -> float:
         """Returns the acceleration in m/s^2 with which the car comes behind those in the lane that its route
         changes to; infinite where it changes to none, or is there."""
-        least = math.inf
+        least, is_beside = math.inf, False
         for begin, end, offset in self._changes:
             if not begin - BEFORE * view.speed < view.s < end or abs(view.t - offset) < ASIDE / 2:
                 continue
@@ -137,9 +137,11 @@ class GivingWay:
                     continue
                 if gap > 0.0:
                     least = min(least, idm(view.speed, math.inf, gap, other.speed, PULL, EASY, HEADWAY))
-                elif gap + LENGTH + other.length > -JAM - EASY * closes and self._beside < PATIENCE:
-                    least = min(least, -EASY)
-        self._beside = self._beside + view.dt if least < 0.0 else 0.0
+                elif gap + LENGTH + other.length > -JAM - EASY * closes:
+                    is_beside = True
+                    if self._beside < (TURN if max(other.speed, view.speed) < STANDING else PATIENCE):
+                        least = min(least, -EASY)
+        self._beside = self._beside + view.dt if is_beside else 0.0
         return least
 
 

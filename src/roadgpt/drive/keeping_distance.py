@@ -78,9 +78,7 @@ class KeepingDistance:
             left, place = distance - FRONT, round(view.s + distance, 3)
             if shows == "green" or left <= 0.0:
                 self._stops_at.discard(place)
-            elif place in self._stops_at or view.speed**2 / 2 / left < (
-                FIRM if shows == "yellow" else HARDEST
-            ):
+            elif place in self._stops_at or view.speed**2 / 2 / left < {"yellow": FIRM}.get(shows, HARDEST):
                 self._stops_at.add(place)
                 found.append(distance)
         return found

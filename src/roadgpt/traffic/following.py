@@ -278,15 +278,6 @@ def _has_room(crowd: Crowd, i: int, k: int, ahead: float, count: int) -> bool:
     return True
 
 
-@inlined
-def _is_in(entries: FloatArray, count: int, body: float, lane: int) -> bool:
-    """Returns whether somebody is in a lane."""
-    found = False
-    for n in range(count):
-        found = found or (entries[n, 0] == lane and entries[n, 4] == body)
-    return found
-
-
 @compiled
 def _may_enter(crowd: Crowd, i: int, k: int, ahead: float, is_over: bool, count: int) -> bool:
     """Returns whether vehicle ``i`` may enter lane ``k`` of its way, which begins ``ahead`` metres before
@@ -301,9 +292,10 @@ def _may_enter(crowd: Crowd, i: int, k: int, ahead: float, is_over: bool, count:
         for n in range(0 if is_over else count):  # also somebody without a grant, such as a pedestrian
             is_there = entries[n, 0] == other and entries[n, 4] != i
             is_there = is_there and entries[n, 1] < last and entries[n, 2] > first
-            leads = k + 1 < whole[i, LAST] and _is_in(entries, count, entries[n, 4], ways[i, k + 1])
-            if is_there and not leads:  # who leads, with its rear still there, is followed
-                return False
+            if is_there:
+                its = entries[:count][entries[:count, 4] == entries[n, 4], 0]
+                if k + 1 >= whole[i, LAST] or not (its == ways[i, k + 1]).any():
+                    return False  # but who leads, with its rear still there, is followed
         until = max(ahead, 0.0) + lanes.conflict_at[c, 1] + row[LENGTH] / 2.0
         leaves = time_over(row[V], until, slowest, row[PULL])
         for j in range(len(numbers)):
@@ -368,11 +360,8 @@ def _to_stop(crowd: Crowd, i: int, count: int) -> float:
     is_over = line < -LINE
     if not is_over and (closed or (lanes.has_stop_sign[before] and whole[i, HAS_STOPPED] == 0)):
         return float(line)
-    if row[PROGRESS] < 1.0:  # it might wait for the lane that it leaves, and others for its grant
-        return float(line)
-    if not _is_first(crowd, i, k, count):
-        return float(line)
-    if not _may_enter(crowd, i, k, ahead, is_over, count):
+    is_changing = row[PROGRESS] < 1.0  # it might wait for the lane that it leaves, and others for its grant
+    if is_changing or not (_is_first(crowd, i, k, count) and _may_enter(crowd, i, k, ahead, is_over, count)):
         return float(line)
     through = lanes.junction[ways[i, k]]
     while k < whole[i, LAST] and lanes.junction[ways[i, k]] == through:
@@ -587,7 +576,7 @@ def step(crowd: Crowd, bodies: FloatArray, room: FloatArray, tick: int) -> None:
     numbers, whole, states, entries = crowd.numbers, crowd.whole, crowd.states, crowd.entries
     count = _boxes(crowd, bodies)
     if whole[TESTED, STATE] == DRIVES:
-        _reserve(crowd)
+        _reserve(crowd, count)
     order = np.argsort(-numbers[:, WAIT], kind="mergesort")
     for at in range(len(numbers)):
         i = order[at]
@@ -601,8 +590,7 @@ def step(crowd: Crowd, bodies: FloatArray, room: FloatArray, tick: int) -> None:
         if whole[i, STATE] == STANDS_HIT:
             numbers[i, A_NEXT] = max(-AFTER_CONTACT, -numbers[i, V] / STEP)
         else:
-            turn = (tick + i) % EVERY == 0
-            count = _decide(crowd, i, count, turn)
+            count = _decide(crowd, i, count, (tick + i) % EVERY == 0)
     room[:] = math.inf
     for n in range(count):
         lane = int(entries[n, 0])
@@ -614,19 +602,31 @@ def step(crowd: Crowd, bodies: FloatArray, room: FloatArray, tick: int) -> None:
 
 
 @compiled
-def _reserve(crowd: Crowd) -> None:
-    """Gives the tested car the grants for the ways through junctions that it cannot or need not stop
-    before."""
-    lanes, ways = crowd.lanes, crowd.ways
+def _reserve(crowd: Crowd, count: int) -> None:
+    """Gives the tested car the grants for the ways through junctions that it cannot or need not stop before,
+    or when it has waited for its turn, or for too long; where it stands then, it gives them back."""
+    lanes, numbers, whole, ways = crowd.lanes, crowd.numbers, crowd.whole, crowd.ways
+    row, here = numbers[TESTED], whole[TESTED, AT]
+    if whole[TESTED, GRANTED] > here and row[V] < STANDING:
+        row[WAIT] += STEP
+        whole[TESTED, GRANTED] = here if row[WAIT] >= 0.0 else whole[TESTED, GRANTED]
     k, ahead, before = _next_way(crowd, TESTED)
     if k < 0:
         return
-    row = crowd.numbers[TESTED]
     line = ahead - row[LENGTH] / 2.0
-    has_priority = True
-    for c in range(lanes.conflict_of[ways[TESTED, k]], lanes.conflict_of[ways[TESTED, k] + 1]):
-        has_priority = has_priority and lanes.conflict[c, 1] < 1
-    top = lanes.limit[ways[TESTED, crowd.whole[TESTED, AT]]]
+    meets = lanes.conflict[lanes.conflict_of[ways[TESTED, k]] : lanes.conflict_of[ways[TESTED, k] + 1]]
+    has_priority = (meets[:, 1] < 1).all()
+    top = lanes.limit[ways[TESTED, here]]
     soon = has_priority and row[V] > STANDING and time_over(row[V], max(line, 0.0), top, SPRINT) < SOON
-    if before < 0 or line < 0.0 or line < row[V] ** 2 / (2.0 * AGAINST_MUST) or soon:
-        crowd.whole[TESTED, GRANTED] = k
+    waits = row[V] < STANDING and line < lanes.length[before] - lanes.stop[before] + 5.0
+    row[WAIT] = max(row[WAIT], 0.0) + STEP * (waits and crowd.lights[before] == GREEN)
+    must = before < 0 or line < 0.0 or line < row[V] ** 2 / (2.0 * AGAINST_MUST)
+    goes = must or soon or row[WAIT] > PATIENCE
+    if not goes and (row[WAIT] <= TURN or not _may_enter(crowd, TESTED, k, ahead, False, count)):
+        return
+    whole[TESTED, GRANTED], row[WAIT] = k, -PATIENCE if goes else -2.0 * TURN
+    for j in range(len(numbers)):  # who is not there yet gives its grant back, if it stops without effort
+        at, stops = whole[j, AT], numbers[j, S] + numbers[j, LENGTH] / 2.0 + numbers[j, V] ** 2 / (2.0 * EASY)
+        is_ahead = at < whole[j, GRANTED] and (meets[:, 0] == ways[j, at + 1]).any()
+        if is_ahead and stops < lanes.length[ways[j, at]]:
+            whole[j, GRANTED] = at
