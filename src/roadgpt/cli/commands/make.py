@@ -369,6 +369,8 @@ def edit_road(
         screen.spent(meter.spent)
     setup = setup.model_copy(update={"designer": "planner", "reader": reader, "chat": chat, "drives": drives})
     old = prove(design, before.seed, before.world, setup.model_copy(update={"drives": False}))
+    if edited.world.scene != before.world.scene:
+        setup = setup.model_copy(update={"scenario": ""})  # the World has its scene, which is another one now
     with redirect_stdout(sys.stderr):  # a user's driver may print
         run = prove(edited.design, before.seed, edited.world, setup)
     folder = made(out) if out is not None else new_folder(words, before.seed)
