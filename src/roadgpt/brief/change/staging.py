@@ -43,7 +43,7 @@ def changed_scene(scene: Scene, changes: Sequence[SceneChange], limit: float) ->
     which the tested car starts if nothing is said. Raises EditError if the scene does not have what is to be
     changed, or contradicts itself afterwards."""
     stage = _Stage(scene, limit)
-    for change in changes:
+    for change in sorted(changes, key=lambda change: not _clears(change)):  # what is added then, stays
         stage.change(change)
     return stage.scene()
 
@@ -117,7 +117,6 @@ class _Stage:
         if not names or (target.side and target.side not in self.before.parked):
             raise EditError(f"the scene has no {_called(target)} to remove; leave that out")
         for name in names:
-            self._once(f"the {name} of the scene", name)
             if name in self.lists:
                 self.lists[name][: len(has[name])] = [None] * len(has[name])
             elif target.side:
@@ -129,7 +128,7 @@ class _Stage:
         said, now = f"the {name} of the scene", self.fields[name]
         self._once(said, name, change.bound)
         if name in LEVELS:
-            self.fields[name] = _level(change, name, now or self.before.flow)
+            self.fields[name] = _level(change, name, now or self.fields["flow"])
             return
         if now is None and name != "speed":
             raise EditError(f"there is no {name} in the scene that could change; ask for {name} first")
@@ -261,6 +260,10 @@ def _level(change: Value, name: str, now: str | None) -> str | None:
     if new == levels[place]:
         raise EditError(f"there is {now or 'no'} traffic already, and no level beyond; leave that out")
     return new
+
+
+def _clears(change: SceneChange) -> bool:
+    return change.what == "remove" and change.target is not None and change.target.name in SINGLE
 
 
 def _called(target: Things) -> str:

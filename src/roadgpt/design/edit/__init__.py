@@ -634,7 +634,8 @@ def _restaged(world: World, changes: Sequence[SceneChange]) -> tuple[World, list
         return world, []
     was, now = ([*parts_said(each)] for each in (before, scene))
     gone, new = [each for each in was if each not in now], [each for each in now if each not in was]
-    told = [f"{' and '.join(gone) or 'new in the scene'} -> {' and '.join(new) or 'no longer'}"]
+    arrow = " -> " if gone and new else "" if gone else "new in the scene: "
+    told = [f"{'; '.join(gone)}{arrow}{'; '.join(new)}{'' if new else ' is gone'}"]
     told += [f"the scene is now: {scene_text(scene) or 'nobody else, by day, in clear weather'}"]
     told += filter(None, [land_remark(scene)])
     own, wanted = (friction_of(each.surfaces) or Site().friction for each in (before, scene))
