@@ -7,7 +7,7 @@ import pytest
 from fake_chat import FakeChat
 from roadgpt.brief.change import EditRequest, read_request
 from roadgpt.brief.change.chatting import EXAMPLES
-from roadgpt.brief.change.plan import change_plan, read_change_plan
+from roadgpt.brief.change.plan import change_plan
 from roadgpt.chat import ChatSettings
 from roadgpt.errors import EditError
 
@@ -63,5 +63,7 @@ def test_a_surface_is_read_with_the_model_too() -> None:
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example[0][:20])
 def test_the_examples_in_the_prompt_are_plans(example: tuple[str, str]) -> None:
     told = json.loads(example[1])
-    assert len(read_change_plan("; ".join(told["changes"])).changes) == len(told["changes"])
+    made = request(FakeChat(example[1]), example[0], rounds=1)
+    assert len(made.changes) + len(made.scene) == len(told["changes"])
+    assert bool(made.scene) == any(line.startswith("scene ") for line in told["changes"])
     assert all(word in example[0] for word in told["unused"])

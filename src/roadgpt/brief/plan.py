@@ -539,7 +539,7 @@ def scene_plan(scene: Scene) -> str:
     line = [" ".join([TESTED_CAR, *itself])] if itself else []
     for role in scene.actors:
         actor = _marked([role.kind, *_times(role.count)], role, AN_ACTOR)
-        actions = ", ".join(_marked([action.what], action, AN_ACTION) for action in role.actions)
+        actions = ", ".join(map(action_plan, role.actions))
         line.append(f"{actor}: {actions}" if actions else actor)
     line += [scene.flow or "", f"oncoming {scene.oncoming}" if scene.oncoming else ""]
     line += [f"parked {side}" for side in scene.parked]
@@ -547,6 +547,11 @@ def scene_plan(scene: Scene) -> str:
     patches = [" ".join([SLIPPERY, *_written(patch, A_PATCH)]) for patch in scene.slippery]
     lands = [" ".join([each.kind, *_times(each.count), *_written(each, A_LAND)]) for each in scene.landscape]
     return "; ".join(filter(None, [*line, scene.light, scene.surface, *patches, *lands]))
+
+
+def action_plan(action: Action) -> str:
+    """Returns an action as it stands in a plan, such as "brake decel=6 after turn 1"."""
+    return _marked([action.what], action, AN_ACTION)
 
 
 def _marked(head: list[str], thing: Role | Action, language: _Language) -> str:
@@ -557,6 +562,11 @@ def read_scene(text: str) -> Scene:
     """Returns the scene that stands in a plan behind &&. Raises BriefError if a word, key or number is not
     part of the language, or the scene contradicts itself.
     """
+    return _made(Scene, scene_fields(text), text)
+
+
+def scene_fields(text: str) -> dict[str, object]:
+    """Returns the fields of the scene that stands in a plan, which are not yet checked against each other."""
     fields: dict[str, object] = {}
     actors, patches, lands, rows = [], [], [], set[str]()
     for part in filter(None, map(str.strip, text.split(";"))):
@@ -589,7 +599,7 @@ def read_scene(text: str) -> Scene:
                 f"a scene has no '{part[:40]}'; its parts, divided by ;, begin with one of {', '.join(known)}"
             )
     of_all = {"actors": tuple(actors), "slippery": tuple(patches), "landscape": tuple(lands)}
-    return _made(Scene, {**fields, "parked": rows, **of_all}, text)
+    return {**fields, "parked": tuple(sorted(rows)), **of_all}
 
 
 def _read_role(text: str) -> Role:
@@ -603,11 +613,12 @@ def _read_role(text: str) -> Role:
         raise BriefError(
             f"'{text[:40]}' does not say where the {kind} is at first; there are {', '.join(SPOTS)}"
         )
-    actions = tuple(_read_action(part) for part in rest.split(",") if part.strip())
+    actions = tuple(read_action(part) for part in rest.split(",") if part.strip())
     return _made(Role, {"kind": kind, **fields, "actions": actions}, text)
 
 
-def _read_action(text: str) -> Action:
+def read_action(text: str) -> Action:
+    """Returns the action that a plan describes, such as "brake 6 after turn 1"."""
     fields: dict[str, object] = {}
     what, *words = _without_mark(text, fields) or [""]
     doing = next((doing for name, doing in DOINGS.items() if name == what), None)

@@ -38,6 +38,8 @@ FLOWS: Mapping[Flow, int] = {"light": 5, "medium": 12, "dense": 25}
 """How many vehicles drive on each km of a lane."""
 USUAL_SPEEDS: Mapping[str, int] = {"adult": 5, "child": 5, "bicycle": 15, "animal": 20}
 """Speeds in km/h: those of Euro NCAP's persons (CPNA) and bicycle (CBNA); that of the animal is ours."""
+USUAL_BRAKING: Mapping[str, float] = {"brake": 6.0, "stop": 3.0}
+"""Decelerations in m/s2 where nothing is said."""
 VEHICLES: tuple[ActorKind, ...] = ("car", "van", "truck", "bus", "motorcycle", "bicycle")
 MOVING: tuple[ActorKind, ...] = (*VEHICLES, "adult", "child", "animal")
 ANYTHING: tuple[ActorKind, ...] = get_args(ActorKind)
@@ -465,7 +467,7 @@ def _said(thing: Frozen) -> list[str]:
 
 def scene_text(scene: Scene) -> str:
     """Returns a scene in words, such as 'a truck ahead; medium traffic'; empty for an empty one."""
-    return "; ".join(_parts(scene))
+    return "; ".join(parts_said(scene))
 
 
 def land_remark(scene: Scene) -> str:
@@ -474,7 +476,8 @@ def land_remark(scene: Scene) -> str:
     return f"not built yet: {lands}; the road is made without it" if lands else ""
 
 
-def _parts(scene: Scene) -> Iterator[str]:
+def parts_said(scene: Scene) -> Iterator[str]:
+    """Yields the parts of a scene in words, such as 'a truck ahead'."""
     starts = [f"at {scene.speed} km/h"] if scene.speed else []
     if scene.lane:
         inner = "the innermost lane" if scene.lane == -1 else f"lane {-scene.lane} from the inside"

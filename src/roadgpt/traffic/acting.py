@@ -13,7 +13,19 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from roadgpt.brief.junctions import Side
-from roadgpt.brief.scene import ALONG, CUES, DOINGS, MOVING, NUMBERS, USUAL_SPEEDS, Action, Role, What, Where
+from roadgpt.brief.scene import (
+    ALONG,
+    CUES,
+    DOINGS,
+    MOVING,
+    NUMBERS,
+    USUAL_BRAKING,
+    USUAL_SPEEDS,
+    Action,
+    Role,
+    What,
+    Where,
+)
 from roadgpt.errors import SceneError
 from roadgpt.traffic.actor import SIZES, STEP
 from roadgpt.traffic.following import HARDEST, JAM, idm, time_over
@@ -28,7 +40,8 @@ CATCH_UP = 1.0  # s, in which most of the way that is missing before a meeting i
 MATCHED = 3.0  # m/s^2, with which somebody matches the tested car
 SHARPEST = 2.0  # sideways nobody moves faster than the speed ahead divided by this
 FAST = 250.0 / 3.6  # m/s, the most that a scene can ask for
-BRAKE, STOP, CHANGE = 6.0, 3.0, 2.0  # m/s^2
+BRAKE, STOP = USUAL_BRAKING.values()
+CHANGE = 2.0  # m/s^2
 EASY = 4.0  # m/s^2, with which the tested car can stop before who stands or is slow
 TURNING = 20.0 / 3.6  # m/s, of vehicles that turn at a junction, at most
 CUT_IN = 10.0  # m, the gap at which one cuts in

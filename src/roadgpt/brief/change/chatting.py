@@ -12,7 +12,8 @@ from roadgpt.brief.change.clashes import refuse_clashes
 from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.change.request import EditRequest
 from roadgpt.brief.change.spoken import spoken
-from roadgpt.brief.readers.chat import MOST_PLAN, opening_of, said_in, told_in, until_valid
+from roadgpt.brief.plan import SCENE
+from roadgpt.brief.readers.chat import MOST_PLAN, OTHERS, opening_of, said_in, told_in, until_valid
 from roadgpt.chat import ChatSettings, open_chat
 from roadgpt.chat.answer import fixed_description
 from roadgpt.errors import EditError, RoadGPTError
@@ -34,7 +35,7 @@ def request_by_chat(words: str, settings: ChatSettings, surface: str = "") -> Ed
     ``surface`` is what the words say of the surface, which may be all that they ask for."""
 
     def read(answer: ChangeAnswer) -> EditRequest:
-        unused, line = said_in(words, answer.unused), "; ".join(answer.changes)[:MOST_PLAN]
+        unused, line = said_in(words, answer.unused), _line(answer)[:MOST_PLAN]
         if surface and not line:
             return EditRequest(words, (), unused, surface=surface)
         request = spoken(read_change_plan(line))
@@ -46,6 +47,12 @@ def request_by_chat(words: str, settings: ChatSettings, surface: str = "") -> Ed
         return until_valid(chat, opening, ChangeAnswer, settings.rounds, read, _objection)
     except EditError as error:
         raise EditError(f"the language model's plan cannot be used: {error}") from error
+
+
+def _line(answer: ChangeAnswer) -> str:
+    scene = [line for line in answer.changes if OTHERS.match(line.strip())]
+    road = "; ".join(line for line in answer.changes if line not in scene)
+    return f"{road} {SCENE} {OTHERS.sub('', '; '.join(scene))}" if scene else road
 
 
 def _objection(error: RoadGPTError, answer: ChangeAnswer) -> str:

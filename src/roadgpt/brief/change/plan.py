@@ -3,14 +3,15 @@
     turn 2: radius x0.75; end: slope down; turn all but(turn 1): side left; add hairpin right after(turn 2)
 
 Changes are separated by ``;``. A change either consists of a place, a colon and what is to be changed there,
-or it begins with ``add``. The page docs/reference/plans.md describes the language."""
+or it begins with ``add``. Behind ``&&`` stand changes of the scene, such as
+``truck: brake more``. The page docs/reference/plans.md describes the language."""
 
 import re
 from collections.abc import Container, Iterator, Mapping
 from dataclasses import replace
-from typing import Any, Literal, cast, get_args
+from typing import Any, Literal, TypeVar, cast, get_args
 
-from roadgpt.brief.amount import figure
+from roadgpt.brief.amount import Frozen, figure
 from roadgpt.brief.change.request import (
     HALVES,
     MUCH,
@@ -19,17 +20,61 @@ from roadgpt.brief.change.request import (
     Change,
     EditRequest,
     Place,
+    SceneChange,
     Steepness,
     Target,
+    Things,
+    Value,
     Way,
 )
 from roadgpt.brief.model import Kind, Sharpness, Side
-from roadgpt.errors import EditError
+from roadgpt.brief.plan import CONDITIONS, SCENE, action_plan, read_action, scene_fields, scene_plan
+from roadgpt.brief.scene import (
+    CUES,
+    DOINGS,
+    FLOWS,
+    SPOTS,
+    WEATHER,
+    Action,
+    ActorKind,
+    Land,
+    Landform,
+    Patch,
+    Role,
+    Scene,
+)
+from roadgpt.brief.scene import NUMBERS as OF_SCENES
+from roadgpt.errors import BriefError, EditError
+
+ACTORS, LANDS = (*get_args(ActorKind), "actor"), (*get_args(Landform), "landscape")
+LISTS: Mapping[str, tuple[str, type[Frozen]]] = {
+    **dict.fromkeys(ACTORS, ("actors", Role)),
+    **dict.fromkeys(LANDS, ("landscape", Land)),
+    "slippery": ("slippery", Patch),
+}
+"""The parts of which a scene can have several, each with the field that holds them, and their type."""
+SINGLE: Mapping[str, tuple[str, ...]] = {
+    "ego": ("speed", "lane", "turn", "person"),
+    "traffic": ("flow", "oncoming"),
+    "oncoming": ("oncoming",),
+    "parked": ("parked",),
+    **{name: (name,) for name in WEATHER},
+    **{name: (field,) for name, (field, _) in CONDITIONS.items() if field != "flow"},
+    "scene": tuple(Scene.model_fields),
+}
+"""The other parts of a scene, each with the fields that make it."""
+OF_SINGLE = {"ego": "speed", "traffic": "flow", "oncoming": "oncoming", **{name: name for name in WEATHER}}
+"""The field of the one number or level that such a part has."""
+LEVELS = ("flow", "oncoming")
+KEYS = {number.key: field for field, number in OF_SCENES.items()}
+Valued = TypeVar("Valued", bound=Value)
 
 
 def change_plan(request: EditRequest) -> str:
     """Returns the plan of a change request, without the text of the request."""
-    return "; ".join(_change(change) for change in request.changes)
+    line = "; ".join(_change(change) for change in request.changes)
+    scene = "; ".join(map(_scene_change, request.scene))
+    return f"{line} {SCENE} {scene}".strip() if scene else line
 
 
 def _change(change: Change) -> str:
@@ -41,8 +86,7 @@ def _change(change: Change) -> str:
 
 def _wish(change: Change) -> Iterator[str]:
     if change.what == "count":
-        low, high = ("..", "") if change.bound < 0 else ("", ".." if change.bound else "")
-        yield f"x{low}{figure(change.to or 0, 6)}{high}"
+        yield f"x{_bounded(change)}"
         return
     if change.what == "move":
         assert change.place is not None
@@ -61,13 +105,54 @@ def _wish(change: Change) -> Iterator[str]:
         yield from _value(change)
 
 
-def _value(change: Change) -> Iterator[str]:
+def _scene_change(change: SceneChange) -> str:
+    if change.target is None:
+        return f"add {scene_plan(cast(Scene, change.new))}"
+    return f"{_things(change.target)}: {' '.join(_scene_wish(change))}"
+
+
+def _things(things: Things) -> str:
+    numbers = ",".join(map(str, things.numbers))
+    words = (things.name, numbers, "all" if things.every else "", things.where, things.side)
+    return " ".join(filter(None, words))
+
+
+def _scene_wish(change: SceneChange) -> Iterator[str]:
+    if change.doing:
+        yield change.doing
+    if change.what == "number":
+        if change.key != _usual_key(change):
+            yield OF_SCENES[change.key].key
+        yield from _value(change)
+    elif change.what == "count":
+        yield f"x{_bounded(change)}"
+    else:
+        yield change.what
+    if change.form is not None:
+        yield _things(change.form)
+    if isinstance(change.new, Action):
+        yield action_plan(change.new)
+
+
+def _usual_key(change: SceneChange) -> str:
+    """Returns the field of the number that stands without a key; "" if there is none."""
+    if change.doing:
+        return next(iter(DOINGS[change.doing].numbers), "")
+    name = change.target.name if change.target else ""
+    return "" if name == "ego" else OF_SINGLE.get(name, "")
+
+
+def _bounded(change: Value) -> str:
+    number = figure(change.to or 0, 6)
+    return {-1: f"..{number}", 0: number, 1: f"{number}.."}[change.bound]
+
+
+def _value(change: Value) -> Iterator[str]:
     place = _place(change.like) if change.like is not None else ""
     if place and not change.is_compared:
         yield {-1: f"..{place}", 0: f"={place}", 1: f"{place}.."}[change.bound]
     elif change.to is not None:
-        number = figure(change.to, 6)
-        yield {-1: f"..{number}", 0: f"={number}", 1: f"{number}.."}[change.bound]
+        yield _bounded(change) if change.bound else f"={figure(change.to, 6)}"
     elif change.by is not None:
         yield f"{'+' if change.more > 0 else '-'}{figure(change.by, 6)}"
     elif change.times is not None:
@@ -123,10 +208,15 @@ def _place(target: Target) -> str:
 def read_change_plan(line: str) -> EditRequest:
     """Returns the changes that a plan describes; raises EditError if a word or number is not part of the
     language, or is in the wrong place."""
-    changes = tuple(ChangeParser(part).change() for part in line.split(";") if part.strip())
-    if not changes:
+    road, _, behind = line.partition(SCENE)
+    changes = tuple(ChangeParser(part).change() for part in road.split(";") if part.strip())
+    try:
+        scene = tuple(SceneChangeParser(part).scene_change() for part in behind.split(";") if part.strip())
+    except BriefError as error:
+        raise EditError(str(error)) from error
+    if not changes and not scene:
         raise EditError("the plan names no change; write for example: turn 2: radius x0.75")
-    return EditRequest(line, changes)
+    return EditRequest(line, changes, scene=scene)
 
 
 TOKEN = re.compile(r"\s*(?:(half[12]|[a-z_]+)|(-?\d+(?:\.\d+)?)|(\.\.|[;:,()=+%-]))")
@@ -205,9 +295,7 @@ class ChangeParser:
     def _wish(self, target: Target) -> Change:
         what = self._word()
         if what == "x":
-            is_most = self._take("..")
-            number = self._whole()
-            return Change("count", target, to=number, bound=-1 if is_most else 1 if self._take("..") else 0)
+            return self._counted(Change("count", target))
         if what in MOVES:
             return Change("move", target, place=self._position(what))
         if what in ALONE:
@@ -255,7 +343,12 @@ class ChangeParser:
             raise self._error("")
         return change
 
-    def _valued(self, change: Change) -> Change:
+    def _counted(self, change: Valued) -> Valued:
+        is_most = self._take("..")
+        number = self._whole()
+        return replace(change, to=number, bound=-1 if is_most else 1 if self._take("..") else 0)
+
+    def _valued(self, change: Valued) -> Valued:
         if self._take("="):
             return self._to(change)
         if self._take(".."):
@@ -285,12 +378,12 @@ class ChangeParser:
             raise self._error(word)
         return replace(change, more=1 if word == "more" else -1, dose=dose)
 
-    def _of(self, change: Change) -> Change:
+    def _of(self, change: Valued) -> Valued:
         """Returns the change with the place of whose value its factor or difference is, if one is given."""
-        return replace(change, like=self._target()) if change.what != "climb" and self._take("=") else change
+        return replace(change, like=self._target()) if change.takes_places and self._take("=") else change
 
-    def _to(self, change: Change) -> Change:
-        if self._next() in (*NOUNS, *KINDS) and change.what != "climb":
+    def _to(self, change: Valued) -> Valued:
+        if self._next() in (*NOUNS, *KINDS) and change.takes_places:
             return replace(change, like=self._target())
         return replace(change, to=self._figure())
 
@@ -401,6 +494,89 @@ class ChangeParser:
     def _error(self, word: str) -> EditError:
         where = f"'{word[:40]}' is not expected in" if word else "something is missing at the end of"
         return EditError(f"{where} the change '{self.text[:60]}'; {PAGE}")
+
+
+class SceneChangeParser(ChangeParser):
+    """Reads one change of a scene from its tokens. What is added stands in the language of scenes."""
+
+    def scene_change(self) -> SceneChange:
+        """Returns the change."""
+        is_condition = ":" not in self.tokens and self._next() in (*CONDITIONS, *WEATHER)
+        if is_condition or self._take("add"):
+            text = self.text if is_condition else self.text.removeprefix("add")
+            fields = scene_fields(text)
+            if not any(fields.values()):
+                raise self._error("")
+            return SceneChange("add", new=Scene().model_copy(update=fields))
+        name = self._word()
+        if name not in (*LISTS, *SINGLE):
+            raise self._error(name)
+        target = self._things(name)
+        self._need(":")
+        found = self._scene_wish(target)
+        if self._next():
+            raise self._error(self._next())
+        return found
+
+    def _things(self, name: str) -> Things:
+        fields: dict[str, Any] = {}
+        while (word := self._next()) not in ("", ":"):
+            if name in LISTS and _is_number(word):
+                self._set(fields, "numbers", self._list())
+                continue
+            self.at += 1
+            if name in LISTS and word == "all":
+                self._set(fields, "every", True)
+            elif name in (*ACTORS, "") and word in SPOTS:
+                self._set(fields, "where", word)
+            elif name in (*ACTORS, *LANDS, "parked", "") and word in (*get_args(Side), "opposite"):
+                self._set(fields, "side", word)
+            else:
+                raise self._error(word)
+        return Things(name, **fields)
+
+    def _scene_wish(self, target: Things) -> SceneChange:
+        is_actor, name = target.name in ACTORS, target.name
+        if is_actor and self._take("add"):
+            new = read_action(self.text.partition(":")[2].strip().removeprefix("add"))
+            self.at = len(self.tokens)
+            return SceneChange("add", target, new=new)
+        if is_actor and self._take("as"):
+            kind = self._word() if self._next() in get_args(ActorKind) else ""
+            form = self._things(kind)
+            if form == Things("") or form.numbers or form.every:
+                raise self._error("")
+            return SceneChange("as", target, form=form)
+        if name in ("traffic", "oncoming") and self._next() in (*FLOWS, "none"):
+            level = self._word()
+            if name == "traffic" and level == "none":
+                return SceneChange("remove", target)
+            return SceneChange("add", new=Scene().model_copy(update={OF_SINGLE[name]: level}))
+        doing = next((each for each in DOINGS if is_actor and each == self._next()), None)
+        self.at += doing is not None
+        if self._take("remove"):
+            return SceneChange("remove", target, doing=doing)
+        if name in (*ACTORS, *LANDS) and doing is None and self._take("x"):
+            return self._counted(SceneChange("count", target))
+        return self._with_number(SceneChange("number", target, doing=doing))
+
+    def _with_number(self, change: SceneChange) -> SceneChange:
+        assert change.target is not None
+        key, name = KEYS.get(self._next(), ""), change.target.name
+        self.at += bool(key)
+        key = key or _usual_key(change)
+        if change.doing:
+            has = (*DOINGS[change.doing].numbers, *CUES)
+        else:
+            has = tuple(LISTS[name][1].model_fields) if name in LISTS else (OF_SINGLE.get(name, ""),)
+        if not key or key not in has:
+            raise self._error(self.tokens[self.at - 1] if key else self._next())
+        change = self._valued(replace(change, key=key))
+        if key in LEVELS and (not change.more or change.by is not None):
+            raise EditError(
+                f"'{self.text[:60]}' is no traffic; write none, light, medium, dense, more or less"
+            )
+        return change
 
 
 def _is_number(word: str) -> bool:

@@ -1,9 +1,11 @@
 """Defines a change request as data: the changes to make, and the places along the road that they concern."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal, cast
 
 from roadgpt.brief.model import Kind, Sharpness, Side, Slope
+from roadgpt.brief.scene import Action, Scene, Where
+from roadgpt.brief.scene import What as Doing
 
 Noun = Literal["turn", "straight", "end", "start", "road"]
 What = Literal[
@@ -108,14 +110,10 @@ class Place:
         return any(each.is_distance for each in self.ends)
 
 
-@dataclass(frozen=True, slots=True)
-class Change:
-    """One requested change."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Value:
+    """How a number is to change."""
 
-    what: What
-    target: Target | None = None
-    """The places to change. With None, the request names no places and means the whole road, or the places
-    mentioned before."""
     more: int = 0
     """1 for sharper, wider, longer or steeper, -1 for the opposite, 0 if the request gives no direction."""
     by: float | None = None
@@ -129,6 +127,26 @@ class Change:
     dose: float = 1.0
     """The size of a change for which no number is given: less than 1 for 'slightly', more than 1 for
     'much'."""
+
+    @property
+    def is_compared(self) -> bool:
+        """Whether the change gives its value by how much it differs from that of another place."""
+        return self.like is not None and (self.by is not None or self.times is not None)
+
+    @property
+    def takes_places(self) -> bool:
+        """Whether the value can be that of another place."""
+        return False
+
+
+@dataclass(frozen=True, slots=True)
+class Change(Value):
+    """One requested change."""
+
+    what: What
+    target: Target | None = None
+    """The places to change. With None, the request names no places and means the whole road, or the places
+    mentioned before."""
     way: Way | None = None
     steepness: Steepness | None = None
     """How steep the new slope is if ``way`` is "up" or "down"; None if the request does not say."""
@@ -149,6 +167,11 @@ class Change:
     words: str = ""
 
     @property
+    def takes_places(self) -> bool:
+        """Whether the value can be that of another place."""
+        return self.what != "climb"
+
+    @property
     def slope(self) -> Slope | None:
         """The new slope, with its steepness if the request gives it, as in "steeply_up"."""
         return cast(Slope, f"{self.steepness}_{self.way}") if self.steepness else self.way
@@ -157,11 +180,6 @@ class Change:
     def sign(self) -> int:
         """1 if the new slope goes uphill, -1 if downhill, 0 if level or if the request does not say."""
         return {"up": 1, "down": -1}.get(self.way or "", 0)
-
-    @property
-    def is_compared(self) -> bool:
-        """Whether the change gives its value by how much it differs from that of another place."""
-        return self.like is not None and (self.by is not None or self.times is not None)
 
     @property
     def is_hill(self) -> bool:
@@ -195,11 +213,43 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
+class Things:
+    """Parts of a scene, as a person names them: 'the truck', 'the second car behind', 'all bridges'."""
+
+    name: str
+    """A kind of actor or of landscape, "actor" and "landscape" for any of them, or another part of a
+    scene."""
+    numbers: tuple[int, ...] = ()
+    """Positions among those that fit, counted from 1, or from -1 backwards from the last one."""
+    every: bool = False
+    where: Where | None = None
+    side: Side | Literal["opposite"] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SceneChange(Value):
+    """One requested change of the scene."""
+
+    what: Literal["add", "remove", "number", "count", "as"]
+    target: Things | None = None
+    """None for what is added to the scene."""
+    doing: Doing | None = None
+    """The action that is removed, or whose number changes."""
+    key: str = ""
+    """The field of the number."""
+    new: Scene | Action | None = None
+    """What is added: a scene of one part, not checked by itself, or an action of an actor."""
+    form: Things | None = None
+    """What somebody is to be, and where; the name is empty if the kind stays."""
+
+
+@dataclass(frozen=True, slots=True)
 class EditRequest:
     """All changes that one request asks for."""
 
     words: str
     changes: tuple[Change, ...]
+    scene: tuple[SceneChange, ...] = field(default=(), kw_only=True)
     unused: tuple[str, ...] = ()
     """Words of the request that were not understood."""
     confidence: float = 1.0

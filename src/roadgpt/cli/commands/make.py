@@ -369,6 +369,9 @@ def edit_road(
         screen.spent(meter.spent)
     setup = setup.model_copy(update={"designer": "planner", "reader": reader, "chat": chat, "drives": drives})
     old = prove(design, before.seed, before.world, setup.model_copy(update={"drives": False}))
+    if setup.scenario and edited.world.scene != before.world.scene:
+        screen.say(f"the scene is no longer that of {setup.scenario}")
+        setup = setup.model_copy(update={"scenario": ""})
     with redirect_stdout(sys.stderr):  # a user's driver may print
         run = prove(edited.design, before.seed, edited.world, setup)
     folder = made(out) if out is not None else new_folder(words, before.seed)

@@ -27,11 +27,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roadgpt.brief.beside import friction_of
 from roadgpt.brief.change import EditRequest, checked_request, other_readings, read_request
 from roadgpt.brief.change.clashes import clash
 from roadgpt.brief.change.plan import read_change_plan
-from roadgpt.brief.change.request import NUMBERING, OF_SLOPE, REORDERS, Change, Target, What
+from roadgpt.brief.change.request import NUMBERING, OF_SLOPE, REORDERS, Change, SceneChange, Target, What
+from roadgpt.brief.change.staging import changed_scene
 from roadgpt.brief.readers.model.trained import DOUBT
+from roadgpt.brief.scene import land_remark, parts_said, scene_text
 from roadgpt.brief.words import SURFACES
 from roadgpt.chat import ChatSettings
 from roadgpt.check.measures import MeasuredFeature, Measures, ups_and_downs, way
@@ -46,6 +49,7 @@ from roadgpt.road import Design, Geometry, Segment, Site, World, build
 ALL_LISTED = 60  # changed segments; of more, only the number is given
 MOVED = 0.005  # m
 PLACES = 200  # heights that the ups and downs of a stretch are seen in
+KMH = 3.6
 FADING = 12.0  # m that a straight gains at most from turns that fade into it
 
 
@@ -588,10 +592,8 @@ def _may_be_other(request: EditRequest, error: EditError) -> bool:
 
 
 def _edited(design: Design, request: EditRequest, world: World, geometry: Geometry) -> Edited:
-    if len(request.changes) > MOST_CHANGES:
-        raise EditError(
-            f"{len(request.changes)} changes at once are too many; ask for {MOST_CHANGES} or fewer"
-        )
+    if (count := len(request.changes) + len(request.scene)) > MOST_CHANGES:
+        raise EditError(f"{count} changes at once are too many; ask for {MOST_CHANGES} or fewer")
     groups, told, idle = directions(request.changes), list[str](), 0
     now, place, may_grow = design, world, world.site.map_size == Site().map_size
     for changes in groups:
@@ -601,13 +603,20 @@ def _edited(design: Design, request: EditRequest, world: World, geometry: Geomet
         told += said
         if changes[0].what == "reverse" and changes is not groups[-1]:
             told.append(RENAMED)
+    is_idle = idle == len(groups)
+    if request.scene:
+        place, said = _restaged(place, request.scene)
+        if not said and is_idle:
+            raise IdleEditError("nothing is to be changed: the scene is so already")
+        told += said or ["the scene was so already"]
+        is_idle = False
     surface = SURFACES.get(request.surface)
     if surface and surface.friction != place.site.friction:
         told.append(f"friction {place.site.friction:g} -> {surface.friction:g}, as {surface.said}")
         place = place.changed(friction=surface.friction)
-    elif surface and idle == len(groups):
+    elif surface and is_idle:
         raise IdleEditError(f"nothing is to be changed: friction is {surface.friction:g} already")
-    elif idle == len(groups):
+    elif is_idle:
         raise IdleEditError(f"nothing is to be changed: '{request.changes[0].words}' is so already")
     if place.site.map_size != world.site.map_size:
         sizes = place.site.map_size, world.site.map_size
@@ -615,6 +624,27 @@ def _edited(design: Design, request: EditRequest, world: World, geometry: Geomet
             "the map is {:g} m wide, since the changed road does not fit on one of {:g} m".format(*sizes)
         )
     return Edited(now, tuple(told), request.unused, request.confidence, request.other, place)
+
+
+def _restaged(world: World, changes: Sequence[SceneChange]) -> tuple[World, list[str]]:
+    """Returns the World with a changed scene, and sentences on it; none if it stays as it is."""
+    before, friction = world.scene, world.site.friction
+    scene = changed_scene(before, changes, KMH * world.limits.speed_limit)
+    if scene == before:
+        return world, []
+    was, now = ([*parts_said(each)] for each in (before, scene))
+    gone, new = [each for each in was if each not in now], [each for each in now if each not in was]
+    arrow = " -> " if gone and new else "" if gone else "new in the scene: "
+    told = [f"{'; '.join(gone)}{arrow}{'; '.join(new)}{'' if new else ' is gone'}"]
+    told += [f"the scene is now: {scene_text(scene) or 'nobody else, by day, in clear weather'}"]
+    told += filter(None, [land_remark(scene)])
+    own, wanted = (friction_of(each.surfaces) or Site().friction for each in (before, scene))
+    if own != wanted and (friction == own or scene.surface != before.surface):
+        world = world.changed(friction=wanted)
+        told += [f"friction {friction:g} -> {wanted:g}"] if friction != wanted else []
+    elif own != wanted:
+        told.append(f"friction stays {friction:g}, which was not set by the scene")
+    return world.changed(scene=scene), told
 
 
 def _in_one_direction(
