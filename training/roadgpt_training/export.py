@@ -13,6 +13,7 @@ from roadgpt.brief.readers.model.neural_network import SCENES
 from roadgpt.brief.readers.model.vocabulary import OF_ROADS
 from roadgpt.errors import UsageError
 from roadgpt_training.network import (
+    MIXTURE,
     STATES,
     NetworkSizes,
     PlanWriter,
@@ -89,6 +90,8 @@ def export(reader: ReaderNetwork | SceneNetwork, folder: Path, ending: str = "")
     """Writes the network to ``encoder.onnx`` and ``decoder.onnx``, or with ``ending`` before ".onnx", with
     weights in int8. The weights use 7 of the 8 bits, so that the files are an eighth smaller when compressed.
     """
+    from onnx import load, save
+    from onnx.helper import set_model_props
     from onnxruntime.quantization import QuantType, quantize_dynamic
     from onnxruntime.quantization.shape_inference import quant_pre_process
 
@@ -106,6 +109,11 @@ def export(reader: ReaderNetwork | SceneNetwork, folder: Path, ending: str = "")
                 str(ready), str(folder / f"{name}{ending}.onnx"), weight_type=QuantType.QInt8,
                 per_channel=True, reduce_range=True, op_types_to_quantize=["MatMul", "Gather", "Gemm"],
             )  # fmt: skip
+    if isinstance(reader, SceneNetwork):  # in the graph, the mixture is folded into constants
+        path = folder / f"encoder{ending}.onnx"
+        model = load(str(path))
+        set_model_props(model, {MIXTURE: " ".join(str(float(each)) for each in reader.mixture)})
+        save(model, str(path))
 
 
 def _graphs(
@@ -187,7 +195,7 @@ def _trained(checkpoint: Path, name: str) -> ReaderNetwork | SceneNetwork:
     pieces = read_vocabulary(checkpoint / "pieces.txt")
     weights = torch.load(checkpoint / "checkpoint.pt", map_location="cpu", weights_only=True)["reader"]
     tokens = weights["bias"].shape[0]
-    found = SCENES if "mixture" in weights else ROUTES if tokens > len(OF_ROADS) else ""
+    found = SCENES if MIXTURE in weights else ROUTES if tokens > len(OF_ROADS) else ""
     if found != name:
         raise UsageError(f"the network in {checkpoint} reads {READS[found]}, not {READS[name]}")
     return network_of(weights, len(pieces), tokens)

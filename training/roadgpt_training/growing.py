@@ -11,7 +11,7 @@ import torch
 from torch import Tensor
 
 from roadgpt.errors import UsageError
-from roadgpt_training.network import DECODER, ENCODER, layers_of
+from roadgpt_training.network import DECODER, ENCODER, MIXTURE, layers_of
 
 SILENT = ("attention.out.", "own.out.", "across.out.", "narrow.")
 """The output weights of a layer, by how their names go on after the layer's number; zero in a new layer."""
@@ -57,7 +57,7 @@ def on_top(weights: Mapping[str, Tensor], states: int) -> dict[str, Tensor]:
     top, others = f"{ENCODER}{2 * layers - 1}.", ("pieces", "places", "kind", "norm", ENCODER[:-1])
     out = {name: value for name, value in weights.items() if name.split(".")[0] not in others}
     out |= {name.replace(top, f"{ENCODER}0."): value for name, value in last.items() if name.startswith(top)}
-    return out | {"mixture": torch.tensor([0.0] * (states - 1) + [2.0])}
+    return out | {MIXTURE: torch.tensor([0.0] * (states - 1) + [2.0])}
 
 
 def grown(weights: Mapping[str, Tensor], tokens: int, layers: int, seed: int = 0) -> dict[str, Tensor]:

@@ -18,6 +18,8 @@ ENCODER, DECODER = "layers.", "decoder."
 """How the names of the weights of a layer begin, before the number of the layer."""
 STATES = (4, 8, 12)
 """The layers of the encoder, counted from 1, whose outputs the network for scenes reads."""
+MIXTURE = "mixture"
+"""The name of the weights by which it mixes them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -268,7 +270,7 @@ def network_of(weights: Mapping[str, Tensor], pieces: int, tokens: int) -> Reade
     """Returns the network with these weights; ``pieces`` and ``tokens`` are the sizes of its vocabularies."""
     encoder, decoder = (layers_of(weights, part) for part in (ENCODER, DECODER))
     sizes = NetworkSizes(pieces=pieces, tokens=tokens, layers=encoder, decoder_layers=decoder)
-    reader = SceneNetwork(sizes) if "mixture" in weights else ReaderNetwork(sizes)
+    reader = SceneNetwork(sizes) if MIXTURE in weights else ReaderNetwork(sizes)
     reader.load_state_dict(weights)
     return reader
 
