@@ -243,11 +243,8 @@ def _amount(change: Value, now: Amount | None, said: str) -> Amount:
     if span(now).lo < 0 or now.hi == 0:
         raise EditError(f"it is not clear what more and less of {now} are in '{said}'; give a figure")
     factor = 1 + HALF_AGAIN * change.dose
-    return _rounded(now.times(factor if change.more > 0 else 1 / factor))
-
-
-def _rounded(amount: Amount) -> Amount:
-    low, high = (None if end is None else float(f"{end:.3g}") for end in (amount.lo, amount.hi))
+    ends = now.times(factor if change.more > 0 else 1 / factor)
+    low, high = (None if end is None else float(f"{end:.3g}") for end in (ends.lo, ends.hi))
     return Amount(lo=low, hi=high)
 
 
