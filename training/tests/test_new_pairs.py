@@ -18,7 +18,7 @@ DATA = Path(__file__).resolve().parents[1] / "data"
 CHANGES = sorted((DATA / "changes" / "train").glob("*.jsonl"))
 CONTRASTS = sorted((DATA / "descriptions" / "contrasts").glob("*.jsonl"))
 FREE = sorted((DATA / "descriptions" / "free").glob("*.jsonl"))
-FIELD = sorted((DATA / "field" / "train").glob("*.jsonl"))
+FIELD = sorted((DATA / "field").glob("*/*.jsonl"))
 JUDGED = [
     *(DATA / "fresh").rglob("*.jsonl"),
     *(DATA / "descriptions" / "test").glob("*.jsonl"),

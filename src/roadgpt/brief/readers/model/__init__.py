@@ -16,7 +16,7 @@ import numpy as np
 
 from roadgpt.brief.feasible import is_possible
 from roadgpt.brief.model import Brief
-from roadgpt.brief.plan import plan
+from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.before import (
     COMPANIONS,
     asks_for_a_closed_loop,
@@ -108,40 +108,57 @@ class ModelReader:
         """Returns the Brief of a description; raises TooMuchError, with the Brief, if the road is too large
         for the usual map of 250 m, and BriefError if the description cannot be read."""
         text = _text(words)
-        told = self._told(text)
-        if told is not None and told.refusal.startswith("!contradiction"):
-            raise refused(told.refusal)
-        is_told = told is not None and told.asks not in (None, Brief())
+        scenes = self._scenes_in(text)
+        told = scenes[0].asks if scenes else None
+        if scenes and scenes[0].refusal.startswith("!contradiction"):
+            raise refused(scenes[0].refusal)
+        is_told = told not in (None, Brief())
         trained, found = self._plans(words, text, is_told)
         if not found:
             raise BriefError(NOT_ONE_ROAD)
         draft = most_plausible(found)
         if draft.asks is not None and draft.asks.map is None and asks_for_a_closed_loop(words):
             raise refused("!impossible loop")
-        if told is None or told.asks is None or not is_told:
-            brief = self._brief(words, text, draft, trained)
-        elif draft.refusal.startswith(("!nonsense", "!unclear")):  # the text tells a scene and no road
-            brief = Brief(words=words, confidence=self._sure_of(told, text))
+        try:
+            brief = self._road(words, text, draft, trained, is_told)
+        except TooMuchError as error:
+            raise TooMuchError(str(error), joined(error.brief, told or Brief(), error.brief.unused)) from None
+        except AnotherRoadError as error:
+            offered = joined(error.brief, told or Brief(), error.brief.unused)
+            raise AnotherRoadError(error.offer, plan(offered), offered) from None
+        if told is None or (not is_told and len(text.words) <= SHORT):
+            is_sure = brief.confidence >= SURE
+            return brief if is_sure else brief.model_copy(update={"other": _other(found, brief, text)})
+        unused = tuple(dict.fromkeys(not_used(text, draft.tokens, told, scenes[0].tokens)))
+        whole = joined(brief, told, unused)
+        sure = self._sure_of(scenes[0], text) if is_told else 1.0
+        if min(sure, brief.confidence) >= SURE:
+            return whole.model_copy(update={"confidence": min(sure, brief.confidence)})
+        if sure < brief.confidence:
+            others = [joined(brief, each.asks, ()) for each in scenes[1:] if each.asks is not None]
         else:
-            brief = self._brief(words, text, draft, trained)
-            brief = brief.model_copy(update={"confidence": min(brief.confidence, self._sure_of(told, text))})
-        if told is not None and told.asks is not None and (is_told or len(text.words) > SHORT):
-            brief = joined(
-                brief, told.asks, tuple(dict.fromkeys(not_used(text, draft.tokens, told.asks, told.tokens)))
-            )
-        is_sure = brief.confidence >= SURE
-        return brief if is_sure else brief.model_copy(update={"other": _other(found, brief, text)})
+            others = [joined(read_plan(line), told, ()) for line in [_other(found, brief, text)] if line]
+        other = next((line for line in map(plan, others) if line != plan(whole)), "")
+        return whole.model_copy(update={"confidence": min(sure, brief.confidence), "other": other})
 
-    def _told(self, text: SlottedText) -> ScoredPlan[Brief] | None:
-        """Returns what is told beside the shape of the road; None if the weights read no scenes."""
+    def _scenes_in(self, text: SlottedText) -> tuple[ScoredPlan[Brief], ...]:
+        """Returns readings of what is told beside the shape of the road, the likeliest first; none if the
+        weights read no scenes."""
         if self.scenes is None:
-            return None
-        found = scored_plans(self.scenes.network, text, self.scenes.refuse_from, read_told)
-        return found[0] if found else None
+            return ()
+        return scored_plans(self.scenes.network, text, self.scenes.refuse_from, read_told)
 
-    def _sure_of(self, told: ScoredPlan[Brief], text: SlottedText) -> float:
+    def _sure_of(self, scene: ScoredPlan[Brief], text: SlottedText) -> float:
         assert self.scenes is not None
-        return self.scenes.confidence(told, text, ())
+        return self.scenes.confidence(scene, text, ())
+
+    def _road(
+        self, words: str, text: SlottedText, draft: ScoredPlan[Brief], trained: Trained, is_told: bool
+    ) -> Brief:
+        """Returns the Brief of a road; of an open one, if the text tells a scene and no road."""
+        if is_told and draft.refusal.startswith(("!nonsense", "!unclear")):
+            return Brief(words=words)
+        return self._brief(words, text, draft, trained)
 
     def _plans(
         self, words: str, text: SlottedText, is_told: bool

@@ -37,6 +37,8 @@ AS_SCENE: dict[str, tuple[str, ...]] = {
     "water": ("lake", "river", "coast"),
     "landscape": ("valley", "ridge"),
     "parking": ("parked",),
+    "speed": ("speed",),
+    "place": ("place", "town"),
 }
 """What the networks for roads name beside the road, with what a scene has instead."""
 
@@ -51,7 +53,8 @@ def things_in(scene: Scene) -> frozenset[str]:
     kinds = [role.kind for role in scene.actors]
     things = [name for name in ("flow", "oncoming", "parked", "fog", "rain") if getattr(scene, name)]
     lands = [land.kind for land in scene.landscape]
-    return frozenset(filter(None, [*kinds, *things, *lands, scene.light, scene.surface]))
+    speeds = ["speed"] if scene.speed or any(role.speed for role in scene.actors) else []
+    return frozenset(filter(None, [*kinds, *things, *lands, *speeds, scene.light, scene.surface]))
 
 
 def joined(road: Brief, told: Brief, unused: Sequence[str]) -> Brief:
@@ -59,7 +62,10 @@ def joined(road: Brief, told: Brief, unused: Sequence[str]) -> Brief:
     fields = {name: getattr(told, name) for name in ("surroundings", "speed", "comes_from", "scene")}
     if road.map is not None:
         fields = {"scene": told.scene}
-    there = things_in(told.scene)
+    there = things_in(told.scene) | {
+        *(["speed"] if told.speed else []),
+        *(["place"] if told.surroundings else []),
+    }
     kept = [name for name in road.beside if there.isdisjoint(AS_SCENE.get(name, ()))]
     motorway = road.motorway or (told.motorway and not road.junctions and road.map is None)
     if motorway:

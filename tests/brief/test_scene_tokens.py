@@ -1,0 +1,139 @@
+"""What the network for scenes may write, and which numbers of a text are kept from all networks."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from roadgpt.brief.model import Brief
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.model.grammar import END, PlanAutomaton
+from roadgpt.brief.readers.model.neural_network import WINDOW, WordPieces
+from roadgpt.brief.readers.model.scene_grammar import scene
+from roadgpt.brief.readers.model.scenes import joined, not_used, read_told
+from roadgpt.brief.readers.model.slots import NumberSlot, slotted
+from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, TOKENS, plan_of
+from roadgpt.errors import BriefError
+from roadgpt_training.field import FIELD, of_road, of_scene
+from roadgpt_training.pair import Pair
+from roadgpt_training.tokens import tokens_of
+
+TEXTS = sorted((Path(__file__).resolve().parents[2] / "training" / "data" / "field").glob("*/*.jsonl"))
+OF_SCENES = {"surroundings", "motorway", "comes_from", "speed", "scene"}
+
+
+def test_plans_of_scenes_survive_being_cut_into_tokens() -> None:
+    """Nearly all: a few labels have a number that the text tells in words, or behind other numbers."""
+    lines = [line for path in TEXTS for line in path.read_text(encoding="utf-8").splitlines()[::9]]
+    pairs = [Pair(row["text"], row["plan"], f"{FIELD}x", row["lang"]) for row in map(json.loads, lines)]
+    whole, written = 0, 0
+    for pair in pairs:
+        part, text = of_scene(pair), slotted(pair.text)
+        if part is None or part.is_refusal:
+            continue
+        whole += 1
+        tokens = tokens_of(part.plan, text.slots)
+        if tokens is None:
+            continue
+        writer = PlanAutomaton(text.slots, frozenset(word.text for word in text.words), whole=scene)
+        for token in (*tokens, END):
+            if NUMBER_OF[token] not in writer.allowed():
+                break
+            writer.push(token)
+        else:
+            written += 1
+            assert read_told(plan_of(tokens, text.slots)) == read_told(part.plan), pair
+    assert whole > 300
+    assert written >= 0.97 * whole
+
+
+def test_road_and_scene_of_a_text_are_its_plan() -> None:
+    for path in TEXTS:
+        for row in map(json.loads, path.read_text(encoding="utf-8").splitlines()[::23]):
+            pair = Pair(row["text"], row["plan"], f"{FIELD}x", row["lang"])
+            road, told = of_road(pair), of_scene(pair)
+            if road is None or told is None or pair.is_refusal:
+                continue
+            asked = read_plan(row["plan"])
+            of_both = read_told(told.plan)
+            assert all(getattr(of_both, name) == getattr(asked, name) for name in OF_SCENES)
+            assert read_plan(road.plan).scene == Brief().scene
+            assert read_plan(road.plan).junctions == asked.junctions
+
+
+@given(st.integers(0, 10_000), st.lists(st.sampled_from([0.3, 12.0, 40.0, 80.5, 100.0]), max_size=4))
+def test_whatever_the_network_may_write_of_scenes_is_read_or_refused_in_one_sentence(
+    seed: int, values: list[float]
+) -> None:
+    rng = np.random.default_rng(seed)
+    slots = [NumberSlot(value, str(rng.choice(["kmh", "metres", "percent", ""]))) for value in values]  # type: ignore[arg-type]
+    writer = PlanAutomaton(slots, frozenset({"3", "15"}), whole=scene)
+    written: list[str] = []
+    while len(written) < 200:
+        token = TOKENS[int(rng.choice(writer.allowed()))]
+        if token == END:
+            break
+        writer.push(token)
+        written.append(token)
+    line = plan_of(written, slots)
+    try:
+        asked = read_told(line) if not line.startswith("!") else Brief()
+    except BriefError as error:
+        assert 20 < len(str(error)) < 400
+    else:
+        assert read_told(plan(asked)) == asked
+
+
+@pytest.mark.parametrize(
+    ("text", "read", "values"),
+    [
+        ("a 2004 Ford at 50 mph", "a year ford at [unused1] kmh", [80.5]),
+        ("a 43-year-old at 18:40 on 12 May 2012", "a age - year - old at time : time on date may date", []),
+        ("I-95 and Route 66", "i - number and route number", []),
+        ("brakes with 8 m/s2, then 0.4 g", "brakes with [unused1] mps2 , then [unused2] mps2", [8.0, 3.9]),
+        ("15 m/s", "[unused1] kmh", [54.0]),
+        ("a road of 2,001 m", "a road of [unused1] metres [unused21]", [2001.0]),
+        ("a radius of 2000", "a radius of [unused1]", [2000.0]),
+        ("a route of 3 turns", "a route of 3 turns", []),
+        ("50 g 3", "[unused1] g 3", [50.0]),
+        ("1:10 uphill", "[unused1] percent uphill", [10.0]),
+        ("friction 0.25", "friction [unused1]", [0.25]),
+    ],
+)
+def test_years_ages_times_and_routes_are_no_measures(text: str, read: str, values: list[float]) -> None:
+    found = slotted(text)
+    assert (found.text, [slot.value for slot in found.slots]) == (read, values)
+
+
+def test_a_long_text_is_encoded_in_chunks_that_end_with_sentences() -> None:
+    pieces = WordPieces(["[PAD]", "[CLS]", "[SEP]", "[UNK]", "a", "b", "."])
+    words = [*["a"] * 100, ".", *["b"] * 60, ".", *["a"] * 300]
+    chunks = pieces.encode(words)
+    assert [len(chunk) for chunk in chunks[:2]] == [103, 63]
+    assert all(chunk[0] == 1 and chunk[-1] == 2 and len(chunk) <= WINDOW + 2 for chunk in chunks)
+    inner = [pieces.number[word] for word in words]
+    assert [piece for chunk in chunks for piece in chunk[1:-1]] == inner
+    assert pieces.encode(["a"] * 5) == [[1, 4, 4, 4, 4, 4, 2]]
+
+
+def test_a_scene_joins_its_road_and_replaces_what_was_named_beside_it() -> None:
+    road = read_plan("turn left r=40 | lanes=1 against=1 beside(pedestrian, rain, kerb)")
+    told = read_plan("| country && adult crossing left: cross; rain")
+    whole = joined(road, told, ("60 m",))
+    assert plan(whole) == plan(
+        read_plan("turn left r=40 | lanes=1 against=1 beside(kerb) && adult crossing left: cross; rain")
+    )  # a design speed of 80 km/h is not for a radius of 40 m
+    assert whole.unused == ("60 m",)
+    gentle = joined(read_plan("turn left r=400"), told, ())
+    assert (gentle.surroundings, gentle.speed) == ("country", 80)
+
+
+def test_numbers_and_road_users_that_no_plan_has_are_named() -> None:
+    text = slotted("a truck ahead at 60 km/h, a bus stop, a cyclist, after 300 m")
+    told = read_plan("&& truck ahead v=60")
+    tokens = tokens_of(plan(told), text.slots)
+    assert tokens is not None
+    assert [*not_used(text, (), told, tokens)] == ["cyclist", "300 m"]
