@@ -50,17 +50,17 @@ SHARES: Mapping[str, Mapping[str, float]] = {
         "generated specs": 0.19,
     },
     "routes": {
-        "networks": 0.22,
-        "field": 0.26,
-        "composed": 0.08,
-        "generated routes": 0.22,
-        "routes": 0.06,
-        "hand": 0.06,
-        "free": 0.05,
-        "contrasts": 0.02,
+        "networks": 0.17,
+        "field": 0.46,
+        "composed": 0.10,
+        "generated routes": 0.12,
+        "routes": 0.04,
+        "hand": 0.04,
+        "free": 0.04,
+        "contrasts": 0.015,
         "generated": 0.005,
-        "generated contrasts": 0.01,
-        "generated specs": 0.015,
+        "generated contrasts": 0.005,
+        "generated specs": 0.005,
     },
     "scenes": {
         "field": 0.6,
@@ -75,7 +75,7 @@ SHARES: Mapping[str, Mapping[str, float]] = {
 with junctions, ``routes`` join these to hand-written roads, ``generated ...`` come from grammars, ``field``
 are texts of the field, and ``composed`` join those that tell only a scene to roads.
 """
-TOKENS_OF = {"roads": OF_ROADS, "routes": OF_ROUTES, "scenes": TOKENS}
+TOKENS_OF = {"roads": OF_ROADS, "routes": TOKENS, "scenes": TOKENS}
 """The tokens that each network knows."""
 NETWORK = "networks/"
 """Prefix of the family names of all pairs with routes or maps."""
@@ -126,7 +126,14 @@ def example(
     is_road = not (pair.is_change or is_scene)
     plan = with_shared_values(_without_motorway(pair.plan), taken.slots) if is_road else pair.plan
     compared = Compared.of(taken.text) if is_road else None
+    told: list[str] | None = []
+    if pair.family.startswith(field.FIELD) and not is_scene and not pair.is_refusal:
+        both = field.of_road(pair), field.of_scene(pair)
+        plan = with_shared_values(_without_motorway(both[0].plan), taken.slots)
+        told = tokens_of(both[1].plan, taken.slots)
+        told = [":", *told[1:]] if told and told[0] == "|" else told
     tokens = tokens_of(plan, taken.slots, compared)
+    tokens = None if tokens is None or told is None else [*tokens, *told]
     if tokens is None or len(tokens) > LONGEST_PLAN - 2 or any(token not in NUMBER_OF for token in tokens):
         return None
     words = [word.text for word in taken.words]
@@ -179,8 +186,11 @@ def examples(
             pair = replace(pair, text=with_talk(pair.text, pair.lang, rng))
         if is_held_out(pair.text) or (network == "routes" and not is_of_field and is_for_roads_only(pair)):
             continue
-        part = field.of_scene(pair) if network == "scenes" else field.of_road(pair) if is_of_field else pair
-        made = example(part, pieces, rng, network == "scenes") if part else None
+        if network == "scenes":
+            part = field.of_scene(pair)
+            made = example(part, pieces, rng, True) if part else None
+        else:
+            made = example(pair, pieces, rng)
         if made and max(made.tokens) < len(TOKENS_OF[network]):
             yield made
 

@@ -350,15 +350,15 @@ def _junction(numbers: Numbers) -> Symbol:
     to_ramps = ("ramp", "main")
     takes = one_of(*(take for take in get_args(Take) if take not in to_ramps))
     listed = one_of(*LISTED_WAYS, *SIDES, "straight")
-    ways, only_in, only_out = (sequel(one_of(key), listed) for key in ("ways=", "in=", "out="))
+    ways, *ends = (sequel(one_of(key), listed) for key in ("ways=", "in=", "out=", "turn_lane="))
     degrees, angle, taper = map(numbers.keyed, ("deg=", "angle=", "taper="))
-    exit_, arms, lanes = map(numbers.keyed, ("exit=", "arms=", "lanes="))
+    exit_, arms, lanes, outer = map(numbers.keyed, ("exit=", "arms=", "lanes=", "outer="))
     radius = any_of(numbers.keyed("r="), numbers.keyed("d="))
     forms: tuple[tuple[Sequence[str], tuple[Symbol, ...]], ...] = (
-        (JUNCTIONS, (takes, CONTROLS, *FLAGS, ways, only_in, only_out, degrees, angle, arms)),
+        (JUNCTIONS, (takes, CONTROLS, *FLAGS, ways, *ends, degrees, angle, arms)),
         (
             [ROUNDABOUT],
-            (takes, one_of(*get_args(IslandSize)), CONTROLS, *FLAGS[1:], ways, exit_, arms, radius, lanes),
+            (takes, one_of(*get_args(IslandSize)), CONTROLS, *FLAGS[1:], ways, exit_, arms, radius, outer, lanes),
         ),
         (RAMPS, (one_of(*to_ramps), side, length, taper)),
         (LANE_KINDS[:2], (side, length)),

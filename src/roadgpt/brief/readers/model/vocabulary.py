@@ -125,7 +125,7 @@ UNIT_OF = {
     "len=": "metres", "taper=": "metres", "climb=": "metres",
     "turning=": "degrees", "pct=": "percent", "steepest=": "percent", **MEASURED,
     **dict.fromkeys(("v=", "dv=", "to=", "lat=", "speed="), "kmh"),
-    **dict.fromkeys(("gap=", "lead=", "s=", "away=", "shift=", "t=", "dist=", "fog="), "metres"),
+    **dict.fromkeys(("gap=", "lead=", "s=", "away=", "shift=", "t=", "dist=", "fog=", "outer="), "metres"),
     **dict.fromkeys(("overlap=", "impact="), "percent"), **dict.fromkeys(("decel=", "accel="), "mps2"),
     **dict.fromkeys(("thw=", "time=", "ttc=", "for=", "mu=", "rain="), ""),
 }  # fmt: skip
