@@ -46,7 +46,7 @@ FIELD_PAIRS = Option(
     "--field", "Folder with hand-written texts of the field, as JSON lines in its subfolder 'train'.",
     folder, DATA / "field",
 )
-ENDINGS = {"roads": "", "routes": "_routes", "scenes": "_scenes"}
+ENDINGS = {"roads": "", "routes": "_routes"}
 """What follows 'encoder' and 'decoder' in the file names of each network."""
 OUT = Argument("out", "OUT", "Name the folder to write into.", folder)
 CHECKPOINT = Argument("checkpoint", "CHECKPOINT", kind=folder)
@@ -61,7 +61,7 @@ OF_TRAIN = (
     Option("--installed", "Start from the installed reader instead of --weights.", bool),
     Option("--steps", "Number of batches that each process trains on.", COUNT, 14_000),
     Option("--size", "Number of pairs in a batch.", COUNT, 48),
-    Option("--network", "What the network reads: single roads and changes, routes and maps, or scenes.",
+    Option("--network", "What it reads: single roads and changes, or routes, maps and texts of the field.",
            click.Choice(tuple(ENDINGS)), "roads"),
     Option("--decoder-layers", "Number of decoder layers; with --installed, a multiple of the number that "
            "the installed reader has.", whole(1, 24, "layers")),
@@ -177,8 +177,7 @@ def train(
     pairs += islice(measured_pairs(seed), MEASURED)
     pieces = begin(out, weights, WEIGHTS if installed else None)
     start = weights / "model.safetensors" if weights else WEIGHTS if installed else None
-    ending = "" if network == "scenes" else ENDINGS[network]
-    plan = TrainingSettings(seed=seed, ending=ending, network=network, **rest)
+    plan = TrainingSettings(seed=seed, ending=ENDINGS[network], network=network, **rest)
     train_together(out, pieces, start, pairs, plan, click.echo)
 
 

@@ -2,29 +2,28 @@
 
 import json
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from hashlib import sha256
 from pathlib import Path
 from typing import NamedTuple, TypedDict
 
 import numpy as np
 
-from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
-from roadgpt.brief.plan import plan
+from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model import NEVER, ModelReader
-from roadgpt.brief.readers.model.scenes import read_told
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.trained import (
     HAS,
     Trained,
+    changes_in,
     chosen,
     features,
     most_plausible,
     scored_plans,
 )
 from roadgpt_training.data import NETWORK
-from roadgpt_training.field import FIELD, of_road, of_scene
+from roadgpt_training.field import FIELD
 from roadgpt_training.pair import Pair, normal_change
 
 MOST_WRONGLY = 0.012  # share of valid held-back descriptions that may be refused; higher for new descriptions
@@ -61,7 +60,6 @@ class Calibration(NetworkCalibration):
     changes: dict[str, float]
     """The weights of the confidence model for change requests."""
     routes: NetworkCalibration | None
-    scenes: NetworkCalibration | None
 
 
 def calibrated(reader: ModelReader, pairs: Sequence[Pair]) -> Calibration:
@@ -71,50 +69,30 @@ def calibrated(reader: ModelReader, pairs: Sequence[Pair]) -> Calibration:
     The content is fitted to ``pairs``, which the networks must not have seen in training.
     """
     honest = [pair for pair in pairs if not pair.is_refusal]
-    words = [pair for pair in honest if not pair.is_change and not pair.family.startswith(FIELD)]
-    of_field = [pair for pair in honest if pair.family.startswith(FIELD)]
-    of_routes = [*filter(_is_route, words), *filter(None, map(of_road, of_field))]
+    words = [pair for pair in honest if not pair.is_change]
+    of_routes = [pair for pair in words if _is_route(pair)]
     asked = [(_read_change(reader, pair.text), normal_change(pair.plan)) for pair in honest if pair.is_change]
-    scenes = [*filter(None, map(of_scene, of_field))]
-    routes, told = reader.routes, reader.scenes
     return {
-        **calibrated_network(reader, reader.roads, [pair for pair in words if not _is_route(pair)], _read),
+        **calibrated_network(reader, reader.roads, [pair for pair in words if not _is_route(pair)]),
         "changes": _weights([(looks, looks.plan == right) for looks, right in asked if looks]),
-        "routes": None if routes is None else calibrated_network(reader, routes, of_routes, _read),
-        "scenes": None if told is None else calibrated_network(reader, told, scenes, _read_scene),
+        "routes": None if reader.routes is None else calibrated_network(reader, reader.routes, of_routes),
     }
 
 
-def calibrated_network(
-    reader: ModelReader,
-    trained: Trained,
-    pairs: Sequence[Pair],
-    read: Callable[[ModelReader, Pair], UncalibratedReading | None],
-) -> NetworkCalibration:
+def calibrated_network(reader: ModelReader, trained: Trained, pairs: Sequence[Pair]) -> NetworkCalibration:
     """Returns the calibration of a network: the lowest probability at which a refusal is accepted, and the
     weights of the confidence model. ``pairs`` are valid descriptions of the kind that the network reads.
     When the weights are fitted, a wrong reading counts ``CAUTION`` times and a right reading counts once.
     """
-    found = [(read(reader, pair), _bare(pair.plan)) for pair in pairs]
-    rights = [(looks, _bare(looks.plan) == right) for looks, right in found if looks]
+    read = [(_read(reader, pair.text), _bare(pair.plan)) for pair in pairs]
+    rights = [(looks, _bare(looks.plan) == right) for looks, right in read if looks]
     return {"refuse_from": _threshold(trained, pairs), "confidence": _weights(rights, CAUTION)}
 
 
-def _read_scene(reader: ModelReader, pair: Pair) -> UncalibratedReading | None:
-    """Returns the likeliest plan of what is told beside the road; None if no plan could be read."""
-    assert reader.scenes is not None
-    text = slotted(pair.text)
-    found = scored_plans(reader.scenes.network, text, NEVER, read_told)
-    return UncalibratedReading(plan(found[0].asks or Brief()), features(found[0], text)) if found else None
-
-
-def _read(reader: ModelReader, pair: Pair) -> UncalibratedReading | None:
-    """Returns the likeliest plan of the road of a description; None if no plan could be read."""
-    text = slotted(pair.text)
-    if pair.family.startswith(FIELD) and reader.routes is not None:
-        found = reader.routes.plans(text, NEVER)
-    else:
-        _, found = chosen(reader.roads, reader.routes, pair.text, text, NEVER)
+def _read(reader: ModelReader, words: str) -> UncalibratedReading | None:
+    """Returns the likeliest plan of a description; None if no plan could be read."""
+    text = slotted(words)
+    _, found = chosen(reader.roads, reader.routes, words, text, NEVER)
     if not found:
         return None
     draft = most_plausible(found)
@@ -126,12 +104,12 @@ def _read(reader: ModelReader, pair: Pair) -> UncalibratedReading | None:
 def _read_change(reader: ModelReader, words: str) -> UncalibratedReading | None:
     """Returns the likeliest plan of a change request, in normal form; None if no plan could be read."""
     text = slotted(words, is_change=True)
-    found = scored_plans(reader.roads.network, text, NEVER, normal_change)
+    found = scored_plans(reader.roads.network, text, NEVER, changes_in(normal_change))
     return UncalibratedReading(found[0].asks or "", features(found[0], text)) if found else None
 
 
 def _is_route(pair: Pair) -> bool:
-    return pair.family.startswith(NETWORK)
+    return pair.family.startswith((NETWORK, FIELD))
 
 
 def _threshold(trained: Trained, honest: Sequence[Pair]) -> float:
@@ -143,7 +121,7 @@ def _threshold(trained: Trained, honest: Sequence[Pair]) -> float:
 
 def _bare(line: str) -> str:
     """Returns the normal form of a plan without its ``beside(...)``, which older pairs do not have."""
-    return plan(normal(read_told(line)).model_copy(update={"beside": ()}))
+    return plan(normal(read_plan(line)).model_copy(update={"beside": ()}))
 
 
 def _weights(found: Sequence[tuple[UncalibratedReading, bool]], caution: float = 1.0) -> dict[str, float]:

@@ -18,15 +18,14 @@ from roadgpt.brief.readers.model.slots import SLOTS, NumberSlot, slot_name, slot
 from roadgpt.brief.readers.model.vocabulary import (
     NUMBER_OF,
     OF_ROADS,
-    OF_ROUTES,
     SLOT_TOKENS,
     TOKENS,
     Compared,
 )
 from roadgpt.brief.sentence import sentence
-from roadgpt_training import field
 from roadgpt_training.asides import with_asides
 from roadgpt_training.augmentation import augmented
+from roadgpt_training.field import FIELD, composed, parted, varied
 from roadgpt_training.generator import draw, draw_change, draw_specified, pairs, series
 from roadgpt_training.mentions import names_in, with_mention, with_talk
 from roadgpt_training.mirror import is_of_junctions
@@ -62,20 +61,12 @@ SHARES: Mapping[str, Mapping[str, float]] = {
         "generated contrasts": 0.005,
         "generated specs": 0.005,
     },
-    "scenes": {
-        "field": 0.6,
-        "composed": 0.2,
-        "networks": 0.04,
-        "hand": 0.07,
-        "free": 0.07,
-        "contrasts": 0.02,
-    },
 }
 """The share of each series of pairs in the training of each network. ``networks`` are hand-written routes
 with junctions, ``routes`` join these to hand-written roads, ``generated ...`` come from grammars, ``field``
 are texts of the field, and ``composed`` join those that tell only a scene to roads.
 """
-TOKENS_OF = {"roads": OF_ROADS, "routes": TOKENS, "scenes": TOKENS}
+TOKENS_OF = {"roads": OF_ROADS, "routes": TOKENS}
 """The tokens that each network knows."""
 NETWORK = "networks/"
 """Prefix of the family names of all pairs with routes or maps."""
@@ -112,9 +103,7 @@ class Example:
     tokens: tuple[int, ...]
 
 
-def example(
-    pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = None, is_scene: bool = False
-) -> Example | None:
+def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = None) -> Example | None:
     """Returns a pair as numbers; None if its text or plan is too long, or if the plan has a number that is
     not in the text, or a token that is not in the vocabulary.
 
@@ -123,18 +112,14 @@ def example(
     the network learns nothing about the token after the refusal.
     """
     taken = slotted(pair.text, pair.is_change)
-    is_road = not (pair.is_change or is_scene)
-    plan = with_shared_values(_without_motorway(pair.plan), taken.slots) if is_road else pair.plan
-    compared = Compared.of(taken.text) if is_road else None
-    told: list[str] | None = []
-    if pair.family.startswith(field.FIELD) and not is_scene and not pair.is_refusal:
-        both = field.of_road(pair), field.of_scene(pair)
-        plan = with_shared_values(_without_motorway(both[0].plan), taken.slots)
-        told = tokens_of(both[1].plan, taken.slots)
-        told = [":", *told[1:]] if told and told[0] == "|" else told
-    tokens = tokens_of(plan, taken.slots, compared)
-    tokens = None if tokens is None or told is None else [*tokens, *told]
-    if tokens is None or len(tokens) > LONGEST_PLAN - 2 or any(token not in NUMBER_OF for token in tokens):
+    plan, told = parted(pair.plan) if pair.family.startswith(FIELD) else (pair.plan, "")
+    plan = plan if pair.is_change else with_shared_values(_without_motorway(plan), taken.slots)
+    compared = None if pair.is_change else Compared.of(taken.text)
+    of_road, of_told = tokens_of(plan, taken.slots, compared), tokens_of(told, taken.slots)
+    if of_road is None or of_told is None:
+        return None
+    tokens = [*of_road, *of_told]
+    if len(tokens) > LONGEST_PLAN - 2 or any(token not in NUMBER_OF for token in tokens):
         return None
     words = [word.text for word in taken.words]
     if rng is not None and taken.slots:
@@ -142,7 +127,7 @@ def example(
     chunks = pieces.encode(words)
     if len(chunks) > MOST_CHUNKS:
         return None
-    end = () if plan in CAUSED and not is_scene else (2,)
+    end = () if plan in CAUSED and not pair.family.startswith(FIELD) else (2,)
     return Example(tuple(map(tuple, chunks)), (1, *(NUMBER_OF[token] for token in tokens), *end))
 
 
@@ -178,7 +163,7 @@ def examples(
         name = names[weighted(shares, rng)]
         pair = next(streams[name])
         is_of_field = name in ("field", "composed")
-        if not pair.is_change and not is_of_field and network != "scenes" and rng.random() < MENTIONS:
+        if not (pair.is_change or is_of_field) and rng.random() < MENTIONS:
             pair = with_mention(pair, rng) or pair
         if pair.is_change and rng.random() < ASIDES:
             pair = with_asides(pair, rng)
@@ -186,11 +171,7 @@ def examples(
             pair = replace(pair, text=with_talk(pair.text, pair.lang, rng))
         if is_held_out(pair.text) or (network == "routes" and not is_of_field and is_for_roads_only(pair)):
             continue
-        if network == "scenes":
-            part = field.of_scene(pair)
-            made = example(part, pieces, rng, True) if part else None
-        else:
-            made = example(pair, pieces, rng)
+        made = example(pair, pieces, rng)
         if made and max(made.tokens) < len(TOKENS_OF[network]):
             yield made
 
@@ -226,13 +207,13 @@ def _streams(seed: int, hand: Sequence[Pair]) -> dict[str, Iterator[Pair]]:
         found["routes"] = (augmented(pair, {}, rng) for pair in joined)
     if "field" in kinds:
         roads = [pair for kind in ("hand", "free", "networks") for pair in kinds.get(kind, ())]
-        found["field"] = field.varied(kinds["field"], np.random.default_rng([seed, 9]))
-        found["composed"] = field.composed(kinds["field"], roads, np.random.default_rng([seed, 10]))
+        found["field"] = varied(kinds["field"], np.random.default_rng([seed, 9]))
+        found["composed"] = composed(kinds["field"], roads, np.random.default_rng([seed, 10]))
     return found
 
 
 def _kind(pair: Pair) -> str:
-    if pair.family.startswith((NETWORK, field.FIELD)):
+    if pair.family.startswith((NETWORK, FIELD)):
         return "networks" if pair.family.startswith(NETWORK) else "field"
     return "changes" if pair.is_change else KINDS_OF_FAMILIES.get(pair.family[:2], "hand")
 

@@ -9,23 +9,14 @@ import torch
 from torch import Tensor, nn
 
 from roadgpt.brief.readers.model import ROUTES
-from roadgpt.brief.readers.model.neural_network import SCENES
 from roadgpt.brief.readers.model.vocabulary import OF_ROADS
 from roadgpt.errors import UsageError
-from roadgpt_training.network import (
-    MIXTURE,
-    STATES,
-    NetworkSizes,
-    PlanWriter,
-    ReaderNetwork,
-    SceneNetwork,
-    network_of,
-)
+from roadgpt_training.network import ReaderNetwork, network_of
 from roadgpt_training.pretrained import NOTICE, read_vocabulary
 
 OPSET = 17
 SHARED = "reader.pieces.weight_quantized"
-READS = {"": "single roads", ROUTES: "routes", SCENES: "scenes"}
+READS = {"": "single roads", ROUTES: "routes"}
 EMBEDDING = "embedding.bin"
 """Name of the file that holds the tensor ``SHARED``; all encoders read this file."""
 
@@ -44,19 +35,6 @@ class EncoderGraph(nn.Module):
         return torch.stack([torch.stack(pair) for pair in self.reader.start(memory)])
 
 
-class SceneEncoderGraph(nn.Module):
-    """Maps states of the encoder for roads (1, layers, n, width) to keys and values as ``EncoderGraph``."""
-
-    def __init__(self, reader: SceneNetwork) -> None:
-        super().__init__()
-        self.reader = reader
-
-    def forward(self, states: Tensor) -> Tensor:
-        """Returns the keys and values of a description."""
-        memory = self.reader.encode(states)
-        return torch.stack([torch.stack(pair) for pair in self.reader.start(memory)])
-
-
 class DecoderGraph(nn.Module):
     """One step of the decoder, which takes the last token of a plan and scores the next token.
 
@@ -66,7 +44,7 @@ class DecoderGraph(nn.Module):
     scores (batch, tokens), and ``own`` with t + 1 tokens.
     """
 
-    def __init__(self, reader: PlanWriter) -> None:
+    def __init__(self, reader: ReaderNetwork) -> None:
         super().__init__()
         self.reader = reader
 
@@ -86,12 +64,10 @@ class DecoderGraph(nn.Module):
         return reader.scores(x)[:, 0], torch.stack(kept)
 
 
-def export(reader: ReaderNetwork | SceneNetwork, folder: Path, ending: str = "") -> None:
+def export(reader: ReaderNetwork, folder: Path, ending: str = "") -> None:
     """Writes the network to ``encoder.onnx`` and ``decoder.onnx``, or with ``ending`` before ".onnx", with
     weights in int8. The weights use 7 of the 8 bits, so that the files are an eighth smaller when compressed.
     """
-    from onnx import load, save
-    from onnx.helper import set_model_props
     from onnxruntime.quantization import QuantType, quantize_dynamic
     from onnxruntime.quantization.shape_inference import quant_pre_process
 
@@ -109,15 +85,10 @@ def export(reader: ReaderNetwork | SceneNetwork, folder: Path, ending: str = "")
                 str(ready), str(folder / f"{name}{ending}.onnx"), weight_type=QuantType.QInt8,
                 per_channel=True, reduce_range=True, op_types_to_quantize=["MatMul", "Gather", "Gemm"],
             )  # fmt: skip
-    if isinstance(reader, SceneNetwork):  # in the graph, the mixture is folded into constants
-        path = folder / f"encoder{ending}.onnx"
-        model = load(str(path))
-        set_model_props(model, {MIXTURE: " ".join(str(float(each)) for each in reader.mixture)})
-        save(model, str(path))
 
 
 def _graphs(
-    reader: ReaderNetwork | SceneNetwork,
+    reader: ReaderNetwork,
 ) -> Sequence[tuple[str, nn.Module, tuple[Tensor, ...], list[str], list[str], dict[str, dict[int, str]]]]:
     """Returns for each graph: name, module, inputs, their names, names of the outputs, and axes that vary."""
     shape = reader.shape
@@ -127,15 +98,9 @@ def _graphs(
     across = torch.zeros((shape.decoder_layers, 2, 2, shape.decoder_heads, 9, size))
     token, place = torch.ones((2, 1), dtype=torch.long), torch.tensor([4])
     seen = torch.zeros((2, 1, 1, 9))
-    if isinstance(reader, SceneNetwork):
-        states = torch.ones((1, len(STATES), 9, shape.width))
-        encoder = (SceneEncoderGraph(reader), (states,), ["states"])
-        varying = {"states": {2: "n"}, "across": {4: "n"}}
-    else:
-        encoder = (EncoderGraph(reader), (pieces,), ["pieces"])
-        varying = {"pieces": {0: "batch", 1: "n"}, "across": {2: "batch", 4: "n"}}
     return (
-        ("encoder", *encoder, ["across"], varying),
+        ("encoder", EncoderGraph(reader), (pieces,), ["pieces"], ["across"],
+         {"pieces": {0: "batch", 1: "n"}, "across": {2: "batch", 4: "n"}}),
         ("decoder", DecoderGraph(reader), (token, place, own, across, seen),
          ["token", "place", "own", "across", "seen"],
          ["scores", "kept"],
@@ -151,7 +116,7 @@ def export_checkpoints(
 
     Args:
         checkpoints: folders with ``checkpoint.pt`` and ``pieces.txt``, by what follows "encoder" and
-            "decoder" in the names of the files: "", ``ROUTES`` or ``SCENES``.
+            "decoder" in the names of the files: "" or ``ROUTES``.
         folder: where the files are written.
         fillers: see ``filler_words``.
         kept: the folder of an exported reader, which supplies the networks that are not in ``checkpoints``;
@@ -168,34 +133,19 @@ def export_checkpoints(
         export(reader, folder, name)
         pieces = read_vocabulary(checkpoints[name] / "pieces.txt")
         (folder / "pieces.txt").write_text("\n".join(pieces), encoding="utf-8")
-    give_states(folder / "encoder.onnx")
     (folder / "words.txt").write_text("\n".join(fillers), encoding="utf-8")
     share_embedding([path for name in ("", ROUTES) if (path := folder / f"encoder{name}.onnx").is_file()])
     (folder / "NOTICE").write_text(NOTICE, encoding="utf-8")
 
 
-def give_states(encoder: Path) -> None:
-    """Makes the outputs of the layers ``STATES`` outputs of an exported encoder."""
-    from onnx import TensorProto, helper, load, save
-
-    model = load(str(encoder), load_external_data=False)
-    given = {output.name for output in model.graph.output}
-    for layer in STATES:
-        name = f"/layers.{layer - 1}/last_norm/LayerNormalization_output_0"
-        if name not in given:
-            shape: list[str | int | None] = ["batch", "n", NetworkSizes().width]
-            model.graph.output.append(helper.make_tensor_value_info(name, TensorProto.FLOAT, shape))
-    save(model, str(encoder))
-
-
-def _trained(checkpoint: Path, name: str) -> ReaderNetwork | SceneNetwork:
+def _trained(checkpoint: Path, name: str) -> ReaderNetwork:
     """Returns the network that a training run saved; ``name`` says which one it must be."""
     if not (checkpoint / "checkpoint.pt").exists():
         raise UsageError(f"there is no checkpoint.pt in {checkpoint}; train first")
     pieces = read_vocabulary(checkpoint / "pieces.txt")
     weights = torch.load(checkpoint / "checkpoint.pt", map_location="cpu", weights_only=True)["reader"]
     tokens = weights["bias"].shape[0]
-    found = SCENES if MIXTURE in weights else ROUTES if tokens > len(OF_ROADS) else ""
+    found = ROUTES if tokens > len(OF_ROADS) else ""
     if found != name:
         raise UsageError(f"the network in {checkpoint} reads {READS[found]}, not {READS[name]}")
     return network_of(weights, len(pieces), tokens)

@@ -1,10 +1,6 @@
-"""Texts of the field tell a road and a scene; each network learns its part of them.
+"""Texts of the field, which tell a road and a scene: how their plans are parted, and more of them."""
 
-The network for scenes writes the scene, and the wishes for the road that stand among the story: its kind, its
-design speed and where one comes from. The networks for roads and routes write the rest.
-"""
-
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache
 
@@ -13,8 +9,7 @@ import numpy as np
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import SCENE, plan, read_plan
-from roadgpt.brief.scene import Land, Scene
-from roadgpt_training.mentions import names_in
+from roadgpt.brief.readers.model.vocabulary import WISHES
 from roadgpt_training.noise import noisy
 from roadgpt_training.pair import Pair, grouped
 from roadgpt_training.phrasebook import one_of
@@ -23,24 +18,8 @@ FIELD = "field/"
 """Prefix of the family names of all pairs of the field."""
 OPEN = plan(normal(Brief()))
 """The plan of a text that tells nothing of its road."""
-OF_SCENES = ("surroundings", "motorway", "comes_from", "speed", "scene")
-"""The fields of a Brief that the network for scenes writes."""
-NAMED: Mapping[str, Scene] = {
-    "traffic": Scene(flow="medium"),
-    "night": Scene(light="night"),
-    "wet": Scene(surface="wet"),
-    "snow": Scene(surface="snow"),
-    "snowfall": Scene(surface="snow"),
-    "ice": Scene(surface="ice"),
-    "bridge": Scene(landscape=(Land(kind="bridge"),)),
-    "tunnel": Scene(landscape=(Land(kind="tunnel"),)),
-}
-"""What a name in ``beside(...)`` of older pairs is as a scene."""
-DOUBTFUL = frozenset(
-    ["pedestrian", "cyclist", "animal", "trees", "buildings", "water", "landscape", "obstacle", "parking",
-     "sun", "rain", "fog"]
-)  # fmt: skip
-"""Names in ``beside(...)`` of older pairs that do not tell which scene is meant."""
+TOLD = ("surroundings", "motorway", "comes_from", "speed", "scene")
+"""The fields of a Brief that stand behind its road in the tokens of the networks."""
 KEPT = 50_000
 """The largest number of plans whose parts are kept, because parting them takes longest."""
 JOINTS = (". ", ". ", "\n", "; ", " - ")
@@ -48,47 +27,23 @@ LONGEST = 900
 """The most letters of two texts that are joined."""
 
 
-def of_scene(pair: Pair) -> Pair | None:
-    """Returns a pair with the part of its plan that the network for scenes writes; None if its plan does not
-    tell that part.
-    """
-    part = _scene_of(pair.plan, pair.family.startswith(FIELD))
-    return None if part is None else replace(pair, plan=part)
-
-
 @lru_cache(maxsize=KEPT)
-def _scene_of(line: str, is_of_field: bool) -> str | None:
-    if line.startswith(("!nonsense", "!unclear")):
-        return line
-    if line.startswith("!"):
-        return "" if not is_of_field else line if line == "!contradiction" else None
-    brief = read_plan(line)
-    if not is_of_field:
-        names = [*names_in(line)]
-        scenes = [NAMED[name] for name in names if name in NAMED]
-        if len(scenes) > 1 or not DOUBTFUL.isdisjoint(names):
-            return None
-        brief = brief.model_copy(update={"scene": scenes[0] if scenes else Scene()})
-    return plan(Brief(**{name: getattr(brief, name) for name in OF_SCENES}))
-
-
-def of_road(pair: Pair) -> Pair | None:
-    """Returns a pair of the field with the part of its plan that the networks for roads write; None if its
-    plan does not tell that part.
+def parted(line: str) -> tuple[str, str]:
+    """Returns the plan of a road, and what is told beside it, in the order of the tokens: first, behind ':',
+    the wishes that do not shape the road, then the scene.
     """
-    part = _road_of(pair.plan)
-    return None if part is None else replace(pair, plan=part)
-
-
-@lru_cache(maxsize=KEPT)
-def _road_of(line: str) -> str | None:
     if line.startswith("!"):
-        return None if line == "!contradiction" else line
+        return line, ""
     brief = read_plan(line)
-    free = {name: Brief.model_fields[name].get_default() for name in OF_SCENES}
+    of_told = {name: getattr(brief, name) for name in TOLD}
+    free = {name: Brief.model_fields[name].get_default() for name in TOLD}
     if brief.junctions or brief.map is not None:
+        of_told.pop("motorway")
         free.pop("motorway")
-    return plan(normal(brief.model_copy(update=free)))
+    told = plan(Brief(**of_told))
+    return plan(normal(brief.model_copy(update=free))), told.replace("|", WISHES, 1) if told[
+        :1
+    ] == "|" else told
 
 
 def composed(pairs: Sequence[Pair], roads: Sequence[Pair], rng: np.random.Generator) -> Iterator[Pair]:

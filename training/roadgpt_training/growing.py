@@ -11,7 +11,7 @@ import torch
 from torch import Tensor
 
 from roadgpt.errors import UsageError
-from roadgpt_training.network import DECODER, ENCODER, MIXTURE, layers_of
+from roadgpt_training.network import DECODER, ENCODER, layers_of
 
 SILENT = ("attention.out.", "own.out.", "across.out.", "narrow.")
 """The output weights of a layer, by how their names go on after the layer's number; zero in a new layer."""
@@ -46,18 +46,6 @@ def deepened(weights: Mapping[str, Tensor], layers: int) -> dict[str, Tensor]:
                 out[f"{ENCODER}{copy}.{norm}weight"] = torch.full_like(scale, float(spread))
                 out[f"{ENCODER}{copy}.{norm}bias"] = torch.full_like(shift, float(mean))
     return out
-
-
-def on_top(weights: Mapping[str, Tensor], states: int) -> dict[str, Tensor]:
-    """Returns the weights for a new network for scenes above an exported network for roads: its decoder, and
-    a silent layer that follows its encoder. Of the ``states`` that are mixed, the last one counts most.
-    """
-    layers = layers_of(weights, ENCODER)
-    last = deepened(weights, 2 * layers)
-    top, others = f"{ENCODER}{2 * layers - 1}.", ("pieces", "places", "kind", "norm", ENCODER[:-1])
-    out = {name: value for name, value in weights.items() if name.split(".")[0] not in others}
-    out |= {name.replace(top, f"{ENCODER}0."): value for name, value in last.items() if name.startswith(top)}
-    return out | {MIXTURE: torch.tensor([0.0] * (states - 1) + [2.0])}
 
 
 def grown(weights: Mapping[str, Tensor], tokens: int, layers: int, seed: int = 0) -> dict[str, Tensor]:

@@ -8,7 +8,6 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Self
 
 import torch
 from torch import Tensor, nn
@@ -16,10 +15,6 @@ from torch.nn import functional
 
 ENCODER, DECODER = "layers.", "decoder."
 """How the names of the weights of a layer begin, before the number of the layer."""
-STATES = (4, 8, 12)
-"""The layers of the encoder, counted from 1, whose outputs the network for scenes reads."""
-MIXTURE = "mixture"
-"""The name of the weights by which it mixes them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,15 +124,16 @@ class DecoderLayer(nn.Module):
         return self.own.keys(self.norms[0](x))
 
 
-class PlanWriter(nn.Module):
-    """Encoder layers, and a decoder that maps an encoded description and a partial plan to scores for the
-    next token.
-    """
+class ReaderNetwork(nn.Module):
+    """Maps the pieces of a description and a partial plan to scores for the next token."""
 
-    def __init__(self, shape: NetworkSizes, dropout: float) -> None:
+    def __init__(self, shape: NetworkSizes, dropout: float = 0.1) -> None:
         super().__init__()
         self.shape = shape
         width = shape.width
+        self.pieces, self.places = nn.Embedding(shape.pieces, width), nn.Embedding(shape.places, width)
+        self.kind = nn.Parameter(torch.zeros(width))  # BERT's first segment
+        self.norm = nn.LayerNorm(width, eps=1e-12)
         self.layers = nn.ModuleList(EncoderLayer(shape, dropout) for _ in range(shape.layers))
         self.tokens, self.plan_places = (
             nn.Embedding(shape.tokens, width),
@@ -149,6 +145,16 @@ class PlanWriter(nn.Module):
         self.dropout = nn.Dropout(dropout)
         for embedding in (self.tokens, self.plan_places):
             nn.init.normal_(embedding.weight, std=0.02)
+
+    def encode(self, pieces: Tensor, seen: Tensor) -> Tensor:
+        """Encodes piece numbers (batch, length) to (batch, length, width); the mask ``seen`` is added to
+        the attention scores.
+        """
+        places = self.places.weight[: pieces.shape[1]]
+        x = self.dropout(self.norm(self.pieces(pieces) + places + self.kind))
+        for layer in self.layers:
+            x = layer(x, seen)
+        return x
 
     def start(self, memory: Tensor) -> list[tuple[Tensor, Tensor]]:
         """Returns the keys and values of the description, (batch, heads, pieces, head size), for every
@@ -174,91 +180,19 @@ class PlanWriter(nn.Module):
         """
         return functional.linear(self.final(x), self.tokens.weight) * self.shape.width**-0.5 * 8 + self.bias
 
-
-class ReaderNetwork(PlanWriter):
-    """The network that reads descriptions of one kind: it has an encoder of its own."""
-
-    def __init__(self, shape: NetworkSizes, dropout: float = 0.1) -> None:
-        super().__init__(shape, dropout)
-        width = shape.width
-        self.pieces, self.places = nn.Embedding(shape.pieces, width), nn.Embedding(shape.places, width)
-        self.kind = nn.Parameter(torch.zeros(width))  # BERT's first segment
-        self.norm = nn.LayerNorm(width, eps=1e-12)
-
-    def encode(self, pieces: Tensor, seen: Tensor) -> Tensor:
-        """Encodes piece numbers (batch, length) to (batch, length, width); the mask ``seen`` is added to
-        the attention scores.
+    def forward(self, pieces: Tensor, tokens: Tensor) -> Tensor:
+        """Returns the scores of the next token at every position of the plans, (batch, length, tokens), for
+        descriptions (batch, chunks, pieces), in which piece 0 is padding, and plans (batch, length). Chunks
+        are encoded one by one.
         """
-        return self.outputs(pieces, seen)[-1]
-
-    def outputs(self, pieces: Tensor, seen: Tensor) -> list[Tensor]:
-        """Returns what each encoder layer makes of piece numbers, as ``encode`` does for the last one."""
-        places = self.places.weight[: pieces.shape[1]]
-        found = [self.dropout(self.norm(self.pieces(pieces) + places + self.kind))]
-        for layer in self.layers:
-            found.append(layer(found[-1], seen))
-        return found[1:]
-
-    def of_chunks(self, pieces: Tensor) -> list[Tensor]:
-        """Returns what each encoder layer makes of texts (batch, chunks, pieces), each of shape (batch,
-        chunks * pieces, width); zero where piece 0 is padding.
-        """
+        batch, chunks, length = pieces.shape
         hidden = (pieces == 0).flatten(0, 1)
         used = ~hidden.all(1)
-        mask = hidden[used][:, None, None, :] * -1e4
-        found = []
-        for encoded in self.outputs(pieces.flatten(0, 1)[used], mask):
-            memory = encoded.new_zeros((*hidden.shape, encoded.shape[2]))
-            memory[used] = encoded.masked_fill(hidden[used][:, :, None], 0)
-            found.append(memory.view(pieces.shape[0], -1, encoded.shape[2]))
-        return found
-
-    def forward(self, pieces: Tensor, tokens: Tensor) -> Tensor:
-        """Returns the scores of the next token at every position of the plans, (batch, length, tokens), for
-        descriptions (batch, chunks, pieces), in which piece 0 is padding, and plans (batch, length).
-        """
+        encoded = self.encode(pieces.flatten(0, 1)[used], hidden[used][:, None, None, :] * -1e4)
+        memory = encoded.new_zeros((batch * chunks, length, self.shape.width))
+        memory[used] = encoded
         seen = (pieces == 0).flatten(1)[:, None, None, :] * -1e4
-        return self.write(tokens, self.of_chunks(pieces)[-1], seen)
-
-
-class SceneNetwork(PlanWriter):
-    """The network that reads scenes, on the encoder of the network for roads, which is not trained with it.
-
-    It sees the outputs of some layers of that encoder, in a mixture that is learnt.
-    """
-
-    def __init__(self, shape: NetworkSizes, dropout: float = 0.1) -> None:
-        super().__init__(shape, dropout)
-        self.mixture = nn.Parameter(torch.zeros(len(STATES)))
-
-    def encode(self, states: Tensor) -> Tensor:
-        """Encodes the outputs of the layers ``STATES``, (batch, layers, length, width), to (batch, length,
-        width). Where all outputs of the first of these layers are zero, there is padding.
-        """
-        x = torch.einsum("blnw,l->bnw", states, torch.softmax(self.mixture, 0))
-        for layer in self.layers:
-            x = layer(x, self.seen(states))
-        return x
-
-    def seen(self, states: Tensor) -> Tensor:
-        """Returns the mask of the padding, which is added to attention scores."""
-        return (states[:, 0] == 0).all(2)[:, None, None, :] * -1e4
-
-    def stands_on(self, below: ReaderNetwork) -> Self:
-        """Returns this network, which reads word pieces now by way of another one; that one is not trained
-        with it and is no part of its weights.
-        """
-        self.below = [below.eval()]
-        return self
-
-    def forward(self, pieces: Tensor, tokens: Tensor) -> Tensor:
-        """Returns the scores of the next token at every position of the plans, (batch, length, tokens), for
-        descriptions (batch, chunks, pieces), in which piece 0 is padding, and plans (batch, length).
-        """
-        with torch.no_grad():
-            outputs = self.below[0].of_chunks(pieces)
-            states = torch.stack([outputs[layer - 1] for layer in STATES], 1)
-        return self.write(tokens, self.encode(states), self.seen(states))
+        return self.write(tokens, memory.view(batch, chunks * length, -1), seen)
 
 
 def layers_of(weights: Mapping[str, Tensor], part: str) -> int:
@@ -266,11 +200,10 @@ def layers_of(weights: Mapping[str, Tensor], part: str) -> int:
     return 1 + max(int(name.split(".")[1]) for name in weights if name.startswith(part))
 
 
-def network_of(weights: Mapping[str, Tensor], pieces: int, tokens: int) -> ReaderNetwork | SceneNetwork:
+def network_of(weights: Mapping[str, Tensor], pieces: int, tokens: int) -> ReaderNetwork:
     """Returns the network with these weights; ``pieces`` and ``tokens`` are the sizes of its vocabularies."""
     encoder, decoder = (layers_of(weights, part) for part in (ENCODER, DECODER))
-    sizes = NetworkSizes(pieces=pieces, tokens=tokens, layers=encoder, decoder_layers=decoder)
-    reader = SceneNetwork(sizes) if MIXTURE in weights else ReaderNetwork(sizes)
+    reader = ReaderNetwork(NetworkSizes(pieces=pieces, tokens=tokens, layers=encoder, decoder_layers=decoder))
     reader.load_state_dict(weights)
     return reader
 

@@ -7,7 +7,6 @@ import numpy as np
 import numpy.typing as npt
 
 from roadgpt.errors import UsageError
-from roadgpt_training.network import MIXTURE
 
 Floats = npt.NDArray[np.float32]
 OURS = "reader."
@@ -28,10 +27,7 @@ def exported_weights(folder: Path, ending: str = "") -> dict[str, Floats]:
         path = folder / f"{name}{ending}.onnx"
         if not path.is_file():
             raise UsageError(f"there is no {path.name} in {folder}; give the folder of an exported reader")
-        model = load(str(path))
-        told = {each.key: each.value for each in model.metadata_props}
-        found |= _weights_of(model.graph)
-        found |= {MIXTURE: np.array(told[MIXTURE].split(), dtype=np.float32)} if MIXTURE in told else {}
+        found |= _weights_of(load(str(path)).graph)
     return found
 
 

@@ -16,19 +16,15 @@ import torch
 from torch import nn
 from torch.nn import functional
 
-from roadgpt.brief.readers.model import WEIGHTS
-from roadgpt.brief.readers.model.neural_network import SCENES
 from roadgpt.errors import UsageError
 from roadgpt_training.data import TOKENS_OF, Numbers, training_batches
 from roadgpt_training.feed import fed_batches
-from roadgpt_training.growing import deepened, grown, on_top
+from roadgpt_training.growing import deepened, grown
 from roadgpt_training.network import (
     DECODER,
     ENCODER,
-    STATES,
     NetworkSizes,
     ReaderNetwork,
-    SceneNetwork,
     layers_of,
     load_minilm,
     network_of,
@@ -81,8 +77,8 @@ class TrainingSettings:
     rank: int = 0
     """Number of this process, from 0; the process 0 writes the checkpoints."""
     network: str = "roads"
-    """What the network reads: "roads", "routes" (and maps) or "scenes"; it learns from other pairs for each.
-    The network for scenes stands on the installed network for roads, which stays as it is.
+    """What the network reads: "roads" (and changes), or "routes" (and maps and texts of the field); it learns
+    from other pairs for each.
     """
 
 
@@ -117,9 +113,6 @@ def train(
     if checkpoint.exists():
         state = torch.load(checkpoint, map_location="cpu", weights_only=True)
     reader = _started(state.get("reader"), weights, pieces, plan).to(device)
-    if isinstance(reader, SceneNetwork):
-        below = network_of(_tensors(WEIGHTS, ""), len(pieces), len(TOKENS_OF["roads"]))
-        reader.stands_on(below.to(device).requires_grad_(False))
     optimiser = _optimiser(reader, plan)
     if state:
         optimiser.load_state_dict(state["optimiser"])
@@ -149,35 +142,26 @@ def train(
 
 def _started(
     kept: dict[str, torch.Tensor] | None, weights: Path | None, pieces: Sequence[str], plan: TrainingSettings
-) -> ReaderNetwork | SceneNetwork:
+) -> ReaderNetwork:
     """Returns the network with the weights of a checkpoint, of an exported reader or of MiniLM.
-
-    A new network for scenes begins with the decoder of the one for roads, and a silent layer before it.
 
     Raises:
         UsageError: there are no such weights.
     """
     tokens = len(TOKENS_OF[plan.network])
     if kept is None and weights and weights.is_dir():
-        has_scenes = plan.network == "scenes" and (weights / f"decoder{SCENES}.onnx").is_file()
-        kept = _tensors(weights, SCENES if has_scenes else plan.ending)
+        exported = exported_weights(weights, plan.ending)
+        kept = {name: torch.from_numpy(array) for name, array in exported.items()}
         kept = grown(kept, tokens, plan.decoder_layers or layers_of(kept, DECODER), plan.seed)
-        if plan.network == "scenes":
-            kept = kept if has_scenes else on_top(kept, len(STATES))
-        else:
-            kept = deepened(kept, plan.encoder_layers or layers_of(kept, ENCODER))
+        kept = deepened(kept, plan.encoder_layers or layers_of(kept, ENCODER))
     if kept:
         return network_of(kept, len(pieces), tokens)
-    if weights is None or plan.network == "scenes":
+    if weights is None:
         raise UsageError("a new training starts from --weights, or from the reader that is --installed")
     layers = plan.decoder_layers or NetworkSizes().decoder_layers
     reader = ReaderNetwork(NetworkSizes(pieces=len(pieces), tokens=tokens, decoder_layers=layers))
     load_minilm(reader, weights, pieces)
     return reader
-
-
-def _tensors(weights: Path, ending: str) -> dict[str, torch.Tensor]:
-    return {name: torch.from_numpy(array) for name, array in exported_weights(weights, ending).items()}
 
 
 def _optimiser(reader: nn.Module, plan: TrainingSettings) -> torch.optim.Optimizer:
@@ -208,7 +192,7 @@ def _rate(step: int, plan: TrainingSettings) -> float:
 
 
 def _step(
-    reader: ReaderNetwork | SceneNetwork,
+    reader: ReaderNetwork,
     optimiser: torch.optim.Optimizer,
     batch: tuple[Numbers, Numbers],
     rate: float,

@@ -16,33 +16,33 @@ import numpy as np
 
 from roadgpt.brief.feasible import is_possible
 from roadgpt.brief.model import Brief
-from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.plan import plan
 from roadgpt.brief.readers.model.before import (
     COMPANIONS,
     asks_for_a_closed_loop,
     negative_number,
     other_script,
 )
-from roadgpt.brief.readers.model.neural_network import SCENES, NeuralNetwork
+from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.number_words import COUNTED, plain
 from roadgpt.brief.readers.model.ring_sizes import with_diameters
-from roadgpt.brief.readers.model.scenes import joined, not_used, read_told
+from roadgpt.brief.readers.model.scenes import asked_in, with_named
 from roadgpt.brief.readers.model.slots import SlottedText, Word, slot_name, slotted
 from roadgpt.brief.readers.model.trained import (
     ANY_WORLD,
     DOUBT,
     ScoredPlan,
     Trained,
+    changes_in,
     chosen,
     confidence,
     features,
     lost,
     most_plausible,
-    read_normal,
     scored_plans,
 )
-from roadgpt.brief.readers.model.vocabulary import plan_of
 from roadgpt.brief.refusal import MOST_CHARACTERS, AnotherRoadError, TooMuchError, refused
+from roadgpt.brief.scene import Scene
 from roadgpt.brief.words import SURE
 from roadgpt.errors import BriefError, PartError
 from roadgpt.reading import read_json, read_text
@@ -50,9 +50,6 @@ from roadgpt.reading import read_json, read_text
 WEIGHTS = Path(__file__).parent / "weights"
 FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json")
 NOT_ONE_ROAD = "this could not be read as one road; use shorter sentences"
-SHORT = 40
-"""The number of words up to which a description without a scene is looked through for words that its plan
-does not depend on."""
 READABLE = "descriptions in English, German, French, Spanish and Italian are read"
 NEVER = 2.0  # a probability that no refusal reaches
 LIKELY = 2.5  # difference of score to another plan of changes that may be meant
@@ -108,72 +105,22 @@ class ModelReader:
         """Returns the Brief of a description; raises TooMuchError, with the Brief, if the road is too large
         for the usual map of 250 m, and BriefError if the description cannot be read."""
         text = _text(words)
-        scenes = self._scenes_in(text)
-        told = scenes[0].asks if scenes else None
-        if scenes and scenes[0].refusal.startswith("!contradiction"):
-            raise refused(scenes[0].refusal)
-        is_told = told not in (None, Brief())
-        trained, found = self._plans(words, text, is_told)
+        trained, found = chosen(self.roads, self.routes, words, text)
         if not found:
             raise BriefError(NOT_ONE_ROAD)
         draft = most_plausible(found)
         if draft.asks is not None and draft.asks.map is None and asks_for_a_closed_loop(words):
             raise refused("!impossible loop")
-        try:
-            brief = self._road(words, text, draft, trained, is_told)
-        except TooMuchError as error:
-            raise TooMuchError(str(error), joined(error.brief, told or Brief(), error.brief.unused)) from None
-        except AnotherRoadError as error:
-            offered = joined(error.brief, told or Brief(), error.brief.unused)
-            raise AnotherRoadError(error.offer, plan(offered), offered) from None
-        if told is None or (not is_told and len(text.words) <= SHORT):
-            is_sure = brief.confidence >= SURE
-            return brief if is_sure else brief.model_copy(update={"other": _other(found, brief, text)})
-        unused = tuple(dict.fromkeys(not_used(text, draft.tokens, told, scenes[0].tokens)))
-        whole = joined(brief, told, unused)
-        sure = self._sure_of(scenes[0], text) if is_told else 1.0
-        if min(sure, brief.confidence) >= SURE:
-            return whole.model_copy(update={"confidence": min(sure, brief.confidence)})
-        if sure < brief.confidence:
-            others = [joined(brief, each.asks, ()) for each in scenes[1:] if each.asks is not None]
-        else:
-            others = [joined(read_plan(line), told, ()) for line in [_other(found, brief, text)] if line]
-        other = next((line for line in map(plan, others) if line != plan(whole)), "")
-        return whole.model_copy(update={"confidence": min(sure, brief.confidence), "other": other})
-
-    def _scenes_in(self, text: SlottedText) -> tuple[ScoredPlan[Brief], ...]:
-        """Returns readings of what is told beside the shape of the road, the likeliest first; none if the
-        weights read no scenes."""
-        if self.scenes is None:
-            return ()
-        return scored_plans(self.scenes.network, text, self.scenes.refuse_from, read_told)
-
-    def _sure_of(self, scene: ScoredPlan[Brief], text: SlottedText) -> float:
-        assert self.scenes is not None
-        return self.scenes.confidence(scene, text, ())
-
-    def _road(
-        self, words: str, text: SlottedText, draft: ScoredPlan[Brief], trained: Trained, is_told: bool
-    ) -> Brief:
-        """Returns the Brief of a road; of an open one, if the text tells a scene and no road."""
-        if is_told and draft.refusal.startswith(("!nonsense", "!unclear")):
-            return Brief(words=words)
-        return self._brief(words, text, draft, trained)
-
-    def _plans(
-        self, words: str, text: SlottedText, is_told: bool
-    ) -> tuple[Trained, tuple[ScoredPlan[Brief], ...]]:
-        """Returns the network that reads the road of a description, and its plans, the likeliest first."""
-        if is_told and self.routes is not None:
-            return self.routes, self.routes.plans(text)
-        return chosen(self.roads, self.routes, words, text)
+        brief = self._brief(words, text, draft, trained)
+        is_sure = brief.confidence >= SURE
+        return brief if is_sure else brief.model_copy(update={"other": _other(found, brief, text)})
 
     def read_change(self, words: str, key: Callable[[str], str]) -> ChangeReading:
         """Returns what a change request asks for, as a plan; raises BriefError if the network wrote none that
         can be read. ``key`` returns the normal form of a plan of changes, or raises an error for an invalid
         one."""
         text = slotted(words, is_change=True)
-        found = scored_plans(self.roads.network, text, self.roads.refuse_from, key)
+        found = scored_plans(self.roads.network, text, self.roads.refuse_from, changes_in(key))
         if not found:
             raise BriefError("this could not be read as changes; use shorter sentences")
         draft, *rest = found
@@ -195,7 +142,7 @@ class ModelReader:
         found: dict[tuple[str, ...], Brief] = {}
         for _ in range(4 * number):
             written = trained.network.drawn(across, text, rng, temperature)
-            asks = read_normal(plan_of(written.tokens, text.slots))
+            asks = asked_in(written.tokens, text.slots)
             draft = ScoredPlan(written.tokens, asks, written.score, written.log_chances)
             found.setdefault(written.tokens, self._brief(words, text, draft, trained))
         others = sorted(found.values(), key=lambda brief: -brief.confidence)
@@ -244,7 +191,7 @@ class ModelReader:
             return None
         tokens = tuple(counts.get(token, token) for token in found[0].tokens)
         try:
-            asks = read_normal(plan_of(tokens, text.slots))
+            asks = asked_in(tokens, text.slots)
         except BriefError:
             return None
         draft, unused = replace(found[0], tokens=tokens), trained.unused(usual, found[0].tokens)
@@ -262,16 +209,6 @@ class ModelReader:
             return None
         fillers = self._fillers | set(map(plain, COMPANIONS))
         return self._trained(ROUTES, self._settings.get("routes", {}), fillers)
-
-    @cached_property
-    def scenes(self) -> Trained | None:
-        """The network that reads scenes, on the encoder of ``roads``; None if the folder has none."""
-        if not (self.folder / f"encoder{SCENES}.onnx").is_file():
-            return None
-        settings = self._settings.get("scenes", {})
-        network = NeuralNetwork(self.folder, SCENES, self.roads.network)
-        weights = settings.get("confidence", {"bias": 3.0})
-        return Trained(network, settings.get("refuse_from", 0.5), weights, frozenset())
 
     def _trained(self, name: str, settings: dict[str, Any], fillers: frozenset[str]) -> Trained:
         weights = settings.get("confidence", {"bias": 0.0})
@@ -303,10 +240,11 @@ def _with_confidence(
         "words": words,
         "unused": unused,
         "confidence": trained.confidence(draft, text, unused),
-        "motorway": False,  # brief.read decides by the words whether a road without junctions is one
+        # of a road without junctions and a scene, brief.read decides by the words whether it is one
+        "motorway": asks.motorway and asks.scene != Scene(),
         "beside": tuple(dict.fromkeys(kept)),  # the roads of a map may be closed loops
     }
-    return with_diameters(asks, draft.tokens, text).model_copy(update=found)
+    return with_named(with_diameters(asks, draft.tokens, text).model_copy(update=found))
 
 
 def _other(found: Sequence[ScoredPlan[Brief]], brief: Brief, text: SlottedText) -> str:

@@ -10,15 +10,9 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
-from roadgpt.brief.readers.model.grammar import (
-    END,
-    Evidence,
-    PlanAutomaton,
-    change_request,
-    description,
-)
+from roadgpt.brief.readers.model.grammar import END, Evidence, PlanAutomaton, change_request
 from roadgpt.brief.readers.model.onnx_runtime import onnxruntime
-from roadgpt.brief.readers.model.scene_grammar import scene
+from roadgpt.brief.readers.model.scene_grammar import whole
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, REFUSALS, TOKENS
 from roadgpt.errors import PartError
@@ -29,10 +23,6 @@ LONGEST = 40  # letters; anything longer is not split
 WINDOW = 126
 """The largest number of pieces that are encoded together, without the special pieces at the two ends."""
 ENDS = frozenset(".;!?")
-SCENES = "_scenes"
-"""What follows 'encoder' and 'decoder' in the file names of the network that reads scenes."""
-MOST_CHUNKS = 32
-"""The largest number of chunks whose encoding is kept."""
 
 
 class WordPieces:
@@ -102,11 +92,11 @@ class WrittenPlan:
     is_done: bool = False
 
     @classmethod
-    def of(cls, text: SlottedText, is_scene: bool) -> Self:
+    def of(cls, text: SlottedText) -> Self:
         """Returns an empty plan for a text."""
-        whole = scene if is_scene else change_request if text.is_change else description
-        evidence = Evidence() if is_scene else Evidence.of(text.text)
-        return cls(PlanAutomaton(text.slots, frozenset(word.text for word in text.words), evidence, whole))
+        said = frozenset(word.text for word in text.words)
+        asked = change_request if text.is_change else whole
+        return cls(PlanAutomaton(text.slots, said, Evidence.of(text.text), asked))
 
     @property
     def score(self) -> float:
@@ -126,14 +116,10 @@ class WrittenPlan:
 class NeuralNetwork:
     """The trained network, which reads a description and writes plans."""
 
-    def __init__(self, folder: Path, name: str = "", below: Self | None = None) -> None:
-        """Takes the folder of the weights, what follows 'encoder' and 'decoder' in the file names, and the
-        network whose encoder comes before this one's, if there is one."""
-        self.folder, self.name, self.below = folder, name, below
-        self.pieces: WordPieces = (
-            below.pieces if below else WordPieces(read_text(folder / "pieces.txt").split("\n"))
-        )
-        self.encoded = lru_cache(maxsize=MOST_CHUNKS)(self._encoded)
+    def __init__(self, folder: Path, name: str = "") -> None:
+        """Takes the folder of the weights, and what follows 'encoder' and 'decoder' in the file names."""
+        self.folder, self.name = folder, name
+        self.pieces = WordPieces(read_text(folder / "pieces.txt").split("\n"))
 
     @cached_property
     def _encoder(self) -> onnxruntime.InferenceSession:
@@ -159,22 +145,12 @@ class NeuralNetwork:
         """Returns the keys and values of a description, to which the decoder attends.
 
         Their shape is (layers, 2, 1, heads, pieces, head size)."""
-        chunks = self.chunks(text)
-        if self.below is None:
-            return np.concatenate([self.encoded(chunk)[0] for chunk in chunks], axis=4)
-        states = np.concatenate([self.below.encoded(chunk)[1] for chunk in chunks], axis=2)
-        across: Array = self._encoder.run(None, {"states": states})[0]
-        return across
+        found = [self._encoder.run(None, {"pieces": np.array([chunk])})[0] for chunk in self.chunks(text)]
+        return np.concatenate(found, axis=4)
 
-    def chunks(self, text: SlottedText) -> tuple[tuple[int, ...], ...]:
+    def chunks(self, text: SlottedText) -> list[list[int]]:
         """Returns the numbers of the pieces of a text, chunk by chunk."""
-        return tuple(map(tuple, self.pieces.encode(word.text for word in text.words)))
-
-    def _encoded(self, chunk: tuple[int, ...]) -> tuple[Array, Array]:
-        """Returns the keys and values of a chunk, and the outputs of the layers that the network for scenes
-        reads, of shape (1, layers, pieces, width); of older weights, no layers."""
-        across, *states = self._encoder.run(None, {"pieces": np.array([chunk], dtype=np.int64)})
-        return across, np.stack(states, axis=1) if states else np.zeros((1, 0, len(chunk), 1), np.float32)
+        return self.pieces.encode(word.text for word in text.words)
 
     def chances_of(
         self, texts: Sequence[SlottedText], tokens: Sequence[str], allowed: SlottedText
@@ -194,7 +170,7 @@ class NeuralNetwork:
         across = self._encoder.run(None, {"pieces": pieces})[0]
         seen = np.where(pieces == 0, np.float32(-1e4), np.float32(0))[:, None, None, :]
         own = np.repeat(_nothing(across[:, :, :1]), len(rows), axis=2)
-        writer = WrittenPlan.of(allowed, self.below is not None).writer
+        writer = WrittenPlan.of(allowed).writer
         last = START
         logs, leads = list[Array](), list[Array]()
         for place, word in enumerate((*tokens, END)):
@@ -218,7 +194,7 @@ class NeuralNetwork:
     ) -> tuple[WrittenPlan, ...]:
         """Returns the likeliest plans for a description, best first, from a beam search; for ``refuse_from``
         see ``scored_plans``."""
-        drafts, done = [WrittenPlan.of(text, self.below is not None)], list[WrittenPlan]()
+        drafts, done = [WrittenPlan.of(text)], list[WrittenPlan]()
         own = _nothing(across)
         for place in range(MOST_TOKENS):
             scores, own = self._step(drafts, place, own, across)
@@ -247,7 +223,7 @@ class NeuralNetwork:
 
     def refusal(self, text: SlottedText) -> float:
         """Returns the probability that the network writes a refusal as the first token."""
-        across, draft = self.encode(text), WrittenPlan.of(text, self.below is not None)
+        across, draft = self.encode(text), WrittenPlan.of(text)
         scores, _ = self._step([draft], 0, _nothing(across), across)
         return float(np.exp(_log_chances(scores[0], draft.writer.allowed())[REFUSED]).sum())
 
@@ -257,7 +233,7 @@ class NeuralNetwork:
         """Returns a plan sampled token by token, but never a refusal.
 
         A higher temperature gives more varied plans."""
-        draft, own = WrittenPlan.of(text, self.below is not None), _nothing(across)
+        draft, own = WrittenPlan.of(text), _nothing(across)
         for place in range(MOST_TOKENS):
             scores, own = self._step([draft], place, own, across)
             logs = _log_chances(scores[0], draft.writer.allowed())

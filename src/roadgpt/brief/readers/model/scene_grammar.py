@@ -1,7 +1,8 @@
-"""The grammar of scenes, for the network that writes them: what it may write behind ``&&``, and before it the
-wishes that a text tells among its story: the kind of road, its design speed, where one comes from.
+"""The grammar of scenes: what may stand behind the tokens of a road, a route or a map. Behind ``:`` stand the
+wishes for it that a text tells among its story (its kind, its design speed, where one comes from), and behind
+``&&`` the scene.
 
-    | country from=south speed= [2] && ego v= [1] ; truck ahead : brake decel= 6 ; night
+    | lanes= 1 against= 1 : country from= south speed= [2] && ego v= [1] ; truck ahead : brake ; night
 
 What follows what comes from the tables of ``brief.scene``, by which plans are read."""
 
@@ -15,12 +16,13 @@ from roadgpt.brief.readers.model.grammar import (
     Stack,
     Symbol,
     any_of,
+    description,
     in_order,
     later,
     one_of,
     sequel,
 )
-from roadgpt.brief.readers.model.vocabulary import RAINS
+from roadgpt.brief.readers.model.vocabulary import RAINS, WISHES
 from roadgpt.brief.scene import (
     ANYTHING,
     CUES,
@@ -47,7 +49,12 @@ MOST_SAME = tuple(map(str, range(1, 10)))
 SIDES = ("left", "right")
 
 
-def scene(numbers: Numbers) -> Symbol:
+def whole(numbers: Numbers) -> Symbol:
+    """Returns the symbol for a road, a route or a map, with what is told beside it."""
+    return sequel(description(numbers), told(numbers))
+
+
+def told(numbers: Numbers) -> Symbol:
     """Returns the symbol for a scene and the wishes before it; all of it may be left out."""
     key = numbers.keyed
     origin = sequel(one_of("from="), one_of(*get_args(Compass)))
@@ -67,9 +74,9 @@ def scene(numbers: Numbers) -> Symbol:
         *[sequel(one_of("slippery"), in_order(*map(key, ("mu=", "s=", "len="))))] * MOST_PATCHES,
         *[_land(numbers)] * MOST_LANDS,
     ]
-    whole = sequel(one_of(SCENE), _joined(parts))
-    told = any_of(sequel(one_of("|"), wishes, Symbol(whole.first, whole.after, True)), whole)
-    return Symbol(told.first, told.after, may_be_empty=True)
+    scene = sequel(one_of(SCENE), _joined(parts))
+    both = any_of(sequel(one_of(WISHES), wishes, Symbol(scene.first, scene.after, True)), scene)
+    return Symbol(both.first, both.after, may_be_empty=True)
 
 
 def _joined(parts: Sequence[Symbol]) -> Symbol:

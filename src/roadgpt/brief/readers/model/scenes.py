@@ -1,22 +1,36 @@
 """What stands among a description beside the shape of its road: the scene, the kind of road, its design speed
-and where one comes from. A network of its own reads it; here it is put together with the road."""
+and where one comes from. In the tokens of a plan it follows the road; here both are put together."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from roadgpt.brief.feasible import is_possible
 from roadgpt.brief.languages import TABLE
 from roadgpt.brief.model import Brief
-from roadgpt.brief.plan import read_plan
-from roadgpt.brief.readers.model.slots import SlottedText
-from roadgpt.brief.readers.model.trained import ANY_WORLD, left_out
-from roadgpt.brief.scene import Scene
+from roadgpt.brief.normal import normal
+from roadgpt.brief.plan import SCENE, read_plan
+from roadgpt.brief.readers.model.slots import NumberSlot, SlottedText
+from roadgpt.brief.readers.model.vocabulary import WISHES, plan_of
+from roadgpt.brief.scene import Land, Scene
 
-NAMES: dict[str, frozenset[str]] = {name: frozenset(words.split()) for name, words in TABLE["others"].items()}
+NAMES: Mapping[str, frozenset[str]] = {
+    name: frozenset(words.split()) for name, words in TABLE["others"].items()
+}
 """The words for other road users, weather and light that a scene should have if they are said, by what they
 are."""
 BEHIND = frozenset(["stop", "stops", "lane", "lanes", "bay", "bays", "shelter", "crossing"])
 """Words before which "bus", "bicycle" or "pedestrian" names a thing beside the road."""
-AS_SCENE: dict[str, tuple[str, ...]] = {
+NAMED: Mapping[str, Scene] = {
+    "traffic": Scene(flow="medium"),
+    "night": Scene(light="night"),
+    "wet": Scene(surface="wet"),
+    "snow": Scene(surface="snow"),
+    "snowfall": Scene(surface="snow"),
+    "ice": Scene(surface="ice"),
+    "bridge": Scene(landscape=(Land(kind="bridge"),)),
+    "tunnel": Scene(landscape=(Land(kind="tunnel"),)),
+}
+"""What some of the names that a network gives beside a road are as a scene."""
+AS_SCENE: Mapping[str, tuple[str, ...]] = {
     "traffic": ("flow", "oncoming"),
     "pedestrian": ("adult", "child"),
     "cyclist": ("bicycle",),
@@ -40,58 +54,66 @@ AS_SCENE: dict[str, tuple[str, ...]] = {
     "speed": ("speed",),
     "place": ("place", "town"),
 }
-"""What the networks for roads name beside the road, with what a scene has instead."""
+"""What a network names beside the road, with what a scene has instead."""
 
 
-def read_told(line: str) -> Brief:
-    """Returns the Brief of what the network for scenes wrote; raises BriefError if it cannot be read."""
-    return read_plan(line) if line else Brief()
+def parted(tokens: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Returns the tokens of a road, and those of what is told beside it."""
+    at = next((at for at, token in enumerate(tokens) if token in (WISHES, SCENE)), len(tokens))
+    told = [*tokens[at:]]
+    return [*tokens[:at]], ["|", *told[1:]] if told[:1] == [WISHES] else told
 
 
-def things_in(scene: Scene) -> frozenset[str]:
-    """Returns the names of what a scene has, such as "truck" and "fog"."""
+def asked_in(tokens: Sequence[str], slots: Sequence[NumberSlot]) -> Brief:
+    """Returns the Brief of a plan in tokens, its road in normal form; raises BriefError if it cannot be
+    read."""
+    road, told = parted(tokens)
+    brief = normal(read_plan(plan_of(road, slots)))
+    return joined(brief, read_plan(plan_of(told, slots))) if told else brief
+
+
+def things_in(brief: Brief) -> frozenset[str]:
+    """Returns the names of what is told of a road beside its shape, such as "truck", "fog" and "speed"."""
+    scene = brief.scene
     kinds = [role.kind for role in scene.actors]
     things = [name for name in ("flow", "oncoming", "parked", "fog", "rain") if getattr(scene, name)]
     lands = [land.kind for land in scene.landscape]
-    speeds = ["speed"] if scene.speed or any(role.speed for role in scene.actors) else []
-    return frozenset(filter(None, [*kinds, *things, *lands, *speeds, scene.light, scene.surface]))
+    is_fast = brief.speed or scene.speed or any(role.speed for role in scene.actors)
+    others = ["speed" if is_fast else "", "place" if brief.surroundings else ""]
+    return frozenset(filter(None, [*kinds, *things, *lands, *others, scene.light, scene.surface]))
 
 
-def joined(road: Brief, told: Brief, unused: Sequence[str]) -> Brief:
+def joined(road: Brief, told: Brief) -> Brief:
     """Returns a road with what is told beside it. A design speed that the road cannot have gives way."""
-    fields = {name: getattr(told, name) for name in ("surroundings", "speed", "comes_from", "scene")}
-    if road.map is not None:
-        fields = {"scene": told.scene}
-    there = things_in(told.scene) | {
-        *(["speed"] if told.speed else []),
-        *(["place"] if told.surroundings else []),
-    }
-    kept = [name for name in road.beside if there.isdisjoint(AS_SCENE.get(name, ()))]
+    names = ["scene"] if road.map is not None else ["surroundings", "speed", "comes_from", "scene"]
+    fields = {name: getattr(told, name) for name in names}
+    there = things_in(told)
+    kept = tuple(name for name in road.beside if there.isdisjoint(AS_SCENE.get(name, ())))
     motorway = road.motorway or (told.motorway and not road.junctions and road.map is None)
-    if motorway:
-        fields |= {"surroundings": None}
-    brief = road.model_copy(
-        update={**fields, "beside": tuple(kept), "motorway": motorway, "unused": tuple(unused)}
-    )
-    if brief.speed is None or is_possible(brief, *ANY_WORLD):
+    fields |= {"surroundings": None} if motorway else {}
+    brief = road.model_copy(update={**fields, "beside": kept, "motorway": motorway})
+    if brief.speed is None or is_possible(brief, None, 0.0):
         return brief
     slower = brief.model_copy(update={"surroundings": None, "speed": None})
-    return slower if is_possible(slower, *ANY_WORLD) else brief
+    return slower if is_possible(slower, None, 0.0) else brief
 
 
-def not_used(
-    text: SlottedText, of_road: Sequence[str], told: Brief, of_scene: Sequence[str]
-) -> Iterator[str]:
-    """Yields, as they are written, the numbers of a text that neither plan has, and the words for other road
-    users, weather and light that the scene lacks."""
-    missing, slot = {*left_out(of_road, text)}.intersection(left_out(of_scene, text)), 0
-    there = things_in(told.scene)
+def with_named(brief: Brief) -> Brief:
+    """Returns a Brief in which the scene has what one name beside the road says, if there is no scene yet."""
+    scenes = [NAMED[name] for name in brief.beside if name in NAMED]
+    if len(scenes) != 1 or brief.scene != Scene():
+        return brief
+    return brief.model_copy(
+        update={"scene": scenes[0], "beside": tuple(name for name in brief.beside if name not in NAMED)}
+    )
+
+
+def without_scene(text: SlottedText, brief: Brief) -> Iterator[str]:
+    """Yields, as they are written, the words of a text for other road users, weather and light that the scene
+    lacks."""
+    there = things_in(brief)
     for word, after in zip(text.words, (*text.words[1:], None), strict=True):
-        if word.text.startswith("[unused") and word.written:
-            if slot in missing or slot >= len(text.slots):
-                yield word.written
-            slot += 1
-        elif after is None or after.text not in BEHIND:
+        if after is None or after.text not in BEHIND:
             names = [name for name, words in NAMES.items() if word.text in words]
             if any(there.isdisjoint(name.split("_or_")) for name in names):
                 yield word.written

@@ -13,12 +13,12 @@ from typing import Any, Generic, TypeVar
 
 from roadgpt.brief.feasible import is_possible
 from roadgpt.brief.model import Brief
-from roadgpt.brief.normal import normal
-from roadgpt.brief.plan import read_plan
+from roadgpt.brief.plan import SCENE
 from roadgpt.brief.readers.model.before import TOLD_ON_ROUTES, may_tell_a_route
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.ring_sizes import LEAST, diameters
-from roadgpt.brief.readers.model.slots import SlottedText, Word
+from roadgpt.brief.readers.model.scenes import asked_in, parted, without_scene
+from roadgpt.brief.readers.model.slots import NumberSlot, SlottedText, Word
 from roadgpt.brief.readers.model.vocabulary import REFUSALS, ROUNDABOUT, SLOT_TOKENS, plan_of
 from roadgpt.brief.words import SURE
 from roadgpt.errors import RoadGPTError
@@ -42,6 +42,10 @@ NEARLY = 0.7
 ANY_WORLD = (None, 0.0)
 """No limit of the map and of radii: those of a World are checked in brief.read."""
 REFUSING = tuple((word,) for word in REFUSALS)
+SHORT = 12
+"""The largest number of words of a text that the network for routes reads only if a word mentions one."""
+LONG = 40
+"""The largest number of words of a text in which all words are looked at that its plan does not depend on."""
 Asked = TypeVar("Asked")
 
 
@@ -65,7 +69,10 @@ class ScoredPlan(Generic[Asked]):
 
 
 def scored_plans(
-    network: NeuralNetwork, text: SlottedText, refuse_from: float, read: Callable[[str], Asked]
+    network: NeuralNetwork,
+    text: SlottedText,
+    refuse_from: float,
+    read: Callable[[Sequence[str], Sequence[NumberSlot]], Asked],
 ) -> tuple[ScoredPlan[Asked], ...]:
     """Returns the plans that a network writes for a description or a change request, the likeliest first.
 
@@ -74,14 +81,14 @@ def scored_plans(
         text: the text that it reads.
         refuse_from: smallest probability of a refusal, from 0 to 1, at which a refusal is allowed as a plan;
             with a value above 1, refusals are never allowed.
-        read: function that reads a plan into its normal form, or raises an error if it cannot be read. Of
-            plans with the same normal form, the likeliest is returned."""
+        read: function that reads tokens, with their numbers, into the normal form of their plan, or raises
+            an error if they cannot be read. Of plans with the same normal form, the likeliest is returned."""
     found: list[ScoredPlan[Asked]] = []
     for written in network.write(network.encode(text), text, refuse_from):
         tokens, asks = written.tokens, None
         if tokens[:1] not in REFUSING:
             try:
-                asks = read(plan_of(tokens, text.slots))
+                asks = read(tokens, text.slots)
             except RoadGPTError:
                 continue  # the plan cannot be read
         if all(asks != each.asks or (asks is None and tokens != each.tokens) for each in found):
@@ -89,9 +96,10 @@ def scored_plans(
     return tuple(found)
 
 
-def read_normal(line: str) -> Brief:
-    """Returns the Brief of a plan in normal form; raises BriefError if it cannot be read."""
-    return normal(read_plan(line))
+def changes_in(key: Callable[[str], str]) -> Callable[[Sequence[str], Sequence[NumberSlot]], str]:
+    """Returns the function that reads the tokens of changes, as ``scored_plans`` needs it; ``key`` returns
+    the normal form of a plan of changes."""
+    return lambda tokens, slots: key(plan_of(tokens, slots))
 
 
 def most_plausible(found: Sequence[ScoredPlan[Brief]]) -> ScoredPlan[Brief]:
@@ -190,12 +198,15 @@ class Trained:
     def plans(self, text: SlottedText, refuse_from: float | None = None) -> tuple[ScoredPlan[Brief], ...]:
         """Returns plans for a description, the likeliest first; for the arguments see ``scored_plans``."""
         least = self.refuse_from if refuse_from is None else refuse_from
-        return scored_plans(self.network, text, least, read_normal)
+        return scored_plans(self.network, text, least, asked_in)
 
     def unused(self, text: SlottedText, tokens: Sequence[str]) -> tuple[str, ...]:
         """Returns the words that a plan does not depend on, and the numbers that it lacks: spelled as in the
-        text, each once, in the order of the text."""
-        idle = self._idle(text, tokens)
+        text, each once, in the order of the text. Of a long text, and of one that tells more than a road, the
+        words are only those for other road users, weather and light that the scene lacks."""
+        is_story = len(text.words) > LONG or bool(parted(tokens)[1])
+        idle = frozenset[int]() if is_story else self._idle(text, tokens)
+        named = {*without_scene(text, asked_in(tokens, text.slots))} if is_story else set()
         out: list[str] = []
         missing, slot = lost(tokens, text), 0
         for place, word in enumerate(text.words):
@@ -203,6 +214,8 @@ class Trained:
                 if slot in missing or slot >= len(text.slots):
                     out.append(word.written)
                 slot += 1
+            elif word.written in named:
+                out.append(word.written)
             elif place in idle:
                 is_short = [each.text for each in text.words[place + 1 : place + 3]] == ["'", "t"]
                 out.append(f"{word.written}'t" if is_short else word.written)
@@ -215,8 +228,6 @@ class Trained:
         both. If the plan changes when all such words are left out, a word that alone restores the plan counts
         as used. A word in letters of another script than Latin is in none of the languages that are read: it
         never counts as used, even if the plan happens to be less likely without it."""
-        if len(self.network.chunks(text)) > 1:
-            return frozenset()
         content = [place for place, word in enumerate(text.words) if _is_content(word, self.fillers)]
         foreign = frozenset(place for place in content if not _is_latin(text.words[place].text))
         tried = [place for place in content if place not in foreign][:MOST_WORDS]
@@ -264,7 +275,8 @@ def chosen(
 
     ``refuse_from`` is the smallest probability of a refusal at which a refusal is allowed as a plan; None
     takes the value that was fitted to each network."""
-    read = routes.plans(text, refuse_from) if routes and may_tell_a_route(words) else ()
+    is_story = routes is not None and routes.network.knows([SCENE]) and len(text.words) > SHORT
+    read = routes.plans(text, refuse_from) if routes and (is_story or may_tell_a_route(words)) else ()
     is_route = bool(read) and _is_route(read[0], roads)
     sure = _confidence(routes, read, text) if routes and is_route else 0.0
     if routes and is_route and sure >= GUESS:

@@ -94,6 +94,8 @@ FIXED = ("15", "30", "45", "60", "90", "120", "135", "180")
 """Angles in degrees that words imply without naming them: a kink, a dog-leg, a right angle."""
 NUMBERS = [*map(str, range(LARGEST_SEEN + 1)), *(each for each in FIXED if int(each) > LARGEST_SEEN)]
 ROUNDABOUT = "roundabout"
+WISHES = ":"
+"""The token before wishes for a road that stand apart from its shape, in the tokens of a description."""
 RAINS = {"drizzle": "rain ..2.5", "downpour": "rain 7.6.."}
 """Tokens of rains that words tell without a number, with what stands in plans."""
 SLOT_TOKENS = [f"[{index + 1}]" for index in range(SLOTS)]
@@ -115,8 +117,6 @@ TOKENS: tuple[str, ...] = tuple(read_text(Path(__file__).with_name("tokens.txt")
 OF_ROADS = TOKENS[: TOKENS.index("//")]
 """All tokens of single roads and changes. Networks for single roads know no other tokens and cannot write a
 plan that needs one."""
-OF_ROUTES = TOKENS[: TOKENS.index("&&")]
-"""All tokens of the network for routes and maps."""
 NUMBER_OF = {token: index for index, token in enumerate(TOKENS)}
 WAYS = re.compile(r"(?<=route=)(?:left|right|straight)(?:[+ ](?:left|right|straight))*")
 """The ways of a route through a map. As tokens they follow each other without a "+"."""
