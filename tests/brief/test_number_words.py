@@ -97,4 +97,4 @@ def test_whatever_the_grammar_allows_is_a_brief(seed: int, values: list[float]) 
 
 def test_word_pieces_are_the_longest_that_fit() -> None:
     pieces = WordPieces(["[PAD]", "[UNK]", "[CLS]", "[SEP]", "hair", "##pin", "##p", "##in", "road"])
-    assert pieces.encode(["hairpin", "road", "xyz"]) == ([2, 4, 5, 8, 1, 3], [-1, 0, 0, 1, 2, -1])
+    assert pieces.encode(["hairpin", "road", "xyz"]) == [[2, 4, 5, 8, 1, 3]]

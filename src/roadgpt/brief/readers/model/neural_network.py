@@ -10,7 +10,14 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
-from roadgpt.brief.readers.model.grammar import END, Evidence, PlanAutomaton, change_request
+from roadgpt.brief.plan import SCENE
+from roadgpt.brief.readers.model.grammar import (
+    END,
+    Evidence,
+    PlanAutomaton,
+    change_request,
+    description,
+)
 from roadgpt.brief.readers.model.onnx_runtime import onnxruntime
 from roadgpt.brief.readers.model.scene_grammar import whole
 from roadgpt.brief.readers.model.slots import SlottedText
@@ -92,10 +99,10 @@ class WrittenPlan:
     is_done: bool = False
 
     @classmethod
-    def of(cls, text: SlottedText) -> Self:
-        """Returns an empty plan for a text."""
+    def of(cls, text: SlottedText, has_scenes: bool) -> Self:
+        """Returns an empty plan for a text; ``has_scenes`` is whether the network can write scenes."""
         said = frozenset(word.text for word in text.words)
-        asked = change_request if text.is_change else whole
+        asked = change_request if text.is_change else whole if has_scenes else description
         return cls(PlanAutomaton(text.slots, said, Evidence.of(text.text), asked))
 
     @property
@@ -141,6 +148,11 @@ class NeuralNetwork:
         known = self._decoder.get_outputs()[0].shape[1]
         return all(NUMBER_OF[token] < known for token in tokens)
 
+    @cached_property
+    def has_scenes(self) -> bool:
+        """Whether the network can write scenes."""
+        return self.knows([SCENE])
+
     def encode(self, text: SlottedText) -> Array:
         """Returns the keys and values of a description, to which the decoder attends.
 
@@ -170,7 +182,7 @@ class NeuralNetwork:
         across = self._encoder.run(None, {"pieces": pieces})[0]
         seen = np.where(pieces == 0, np.float32(-1e4), np.float32(0))[:, None, None, :]
         own = np.repeat(_nothing(across[:, :, :1]), len(rows), axis=2)
-        writer = WrittenPlan.of(allowed).writer
+        writer = WrittenPlan.of(allowed, self.has_scenes).writer
         last = START
         logs, leads = list[Array](), list[Array]()
         for place, word in enumerate((*tokens, END)):
@@ -194,7 +206,7 @@ class NeuralNetwork:
     ) -> tuple[WrittenPlan, ...]:
         """Returns the likeliest plans for a description, best first, from a beam search; for ``refuse_from``
         see ``scored_plans``."""
-        drafts, done = [WrittenPlan.of(text)], list[WrittenPlan]()
+        drafts, done = [WrittenPlan.of(text, self.has_scenes)], list[WrittenPlan]()
         own = _nothing(across)
         for place in range(MOST_TOKENS):
             scores, own = self._step(drafts, place, own, across)
@@ -223,7 +235,7 @@ class NeuralNetwork:
 
     def refusal(self, text: SlottedText) -> float:
         """Returns the probability that the network writes a refusal as the first token."""
-        across, draft = self.encode(text), WrittenPlan.of(text)
+        across, draft = self.encode(text), WrittenPlan.of(text, self.has_scenes)
         scores, _ = self._step([draft], 0, _nothing(across), across)
         return float(np.exp(_log_chances(scores[0], draft.writer.allowed())[REFUSED]).sum())
 
@@ -233,7 +245,7 @@ class NeuralNetwork:
         """Returns a plan sampled token by token, but never a refusal.
 
         A higher temperature gives more varied plans."""
-        draft, own = WrittenPlan.of(text), _nothing(across)
+        draft, own = WrittenPlan.of(text, self.has_scenes), _nothing(across)
         for place in range(MOST_TOKENS):
             scores, own = self._step([draft], place, own, across)
             logs = _log_chances(scores[0], draft.writer.allowed())

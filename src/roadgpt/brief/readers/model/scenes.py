@@ -67,9 +67,16 @@ def parted(tokens: Sequence[str]) -> tuple[list[str], list[str]]:
 def asked_in(tokens: Sequence[str], slots: Sequence[NumberSlot]) -> Brief:
     """Returns the Brief of a plan in tokens, its road in normal form; raises BriefError if it cannot be
     read."""
-    road, told = parted(tokens)
-    brief = normal(read_plan(plan_of(road, slots)))
-    return joined(brief, read_plan(plan_of(told, slots))) if told else brief
+    brief = normal(read_plan(plan_of(parted(tokens)[0], slots)))
+    told = told_in(tokens, slots)
+    return brief if told == Brief() else joined(brief, told)
+
+
+def told_in(tokens: Sequence[str], slots: Sequence[NumberSlot]) -> Brief:
+    """Returns the Brief of what a plan in tokens tells beside its road; raises BriefError if it cannot be
+    read."""
+    told = parted(tokens)[1]
+    return read_plan(plan_of(told, slots)) if told else Brief()
 
 
 def things_in(brief: Brief) -> frozenset[str]:

@@ -13,11 +13,10 @@ from typing import Any, Generic, TypeVar
 
 from roadgpt.brief.feasible import is_possible
 from roadgpt.brief.model import Brief
-from roadgpt.brief.plan import SCENE
 from roadgpt.brief.readers.model.before import TOLD_ON_ROUTES, may_tell_a_route
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.ring_sizes import LEAST, diameters
-from roadgpt.brief.readers.model.scenes import asked_in, parted, without_scene
+from roadgpt.brief.readers.model.scenes import asked_in, told_in, without_scene
 from roadgpt.brief.readers.model.slots import NumberSlot, SlottedText, Word
 from roadgpt.brief.readers.model.vocabulary import REFUSALS, ROUNDABOUT, SLOT_TOKENS, plan_of
 from roadgpt.brief.words import SURE
@@ -204,9 +203,10 @@ class Trained:
         """Returns the words that a plan does not depend on, and the numbers that it lacks: spelled as in the
         text, each once, in the order of the text. Of a long text, and of one that tells more than a road, the
         words are only those for other road users, weather and light that the scene lacks."""
-        is_story = len(text.words) > LONG or bool(parted(tokens)[1])
+        told = told_in(tokens, text.slots)
+        is_story = len(text.words) > LONG or told != Brief()
         idle = frozenset[int]() if is_story else self._idle(text, tokens)
-        named = {*without_scene(text, asked_in(tokens, text.slots))} if is_story else set()
+        named = {*without_scene(text, told)} if is_story else set()
         out: list[str] = []
         missing, slot = lost(tokens, text), 0
         for place, word in enumerate(text.words):
@@ -275,7 +275,7 @@ def chosen(
 
     ``refuse_from`` is the smallest probability of a refusal at which a refusal is allowed as a plan; None
     takes the value that was fitted to each network."""
-    is_story = routes is not None and routes.network.knows([SCENE]) and len(text.words) > SHORT
+    is_story = routes is not None and routes.network.has_scenes and len(text.words) > SHORT
     read = routes.plans(text, refuse_from) if routes and (is_story or may_tell_a_route(words)) else ()
     is_route = bool(read) and _is_route(read[0], roads)
     sure = _confidence(routes, read, text) if routes and is_route else 0.0
