@@ -145,14 +145,14 @@ def drive(job):
             found.append((round(at, 1), mover.actors[a].name, mover.actors[b].name))
         if tick % 10 == 0:
             lights = [mover.lights.shown(end, at) for end in mover._ends]
-            there = {
-                row for row in waits_without_reason(mover)
-                if lights[mover._ways[row, mover._whole[row, 0]]] != RED
-            }  # fmt: skip
             rows = mover._rows.tolist()
+            red = {row for row in rows if lights[mover._ways[row, mover._whole[row, 0]]] == RED}
+            there = {*waits_without_reason(mover)} - red
             places = {row: (mover._whole[row, 0], round(mover._numbers[row, 0], 1)) for row in rows}
             stood = {
-                (row, place): stood.get((row, place), 0) + (row in there) for row, place in places.items()
+                (row, place): stood.get((row, place), 0) + (row in there)
+                for row, place in places.items()
+                if row in there or row in red
             }
             stuck += [(round(at), row) for row in there if stood[row, places[row]] == PATIENCE]
         if (at > seconds and not mover.vehicles) or at > seconds + EMPTYING:
