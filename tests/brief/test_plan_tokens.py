@@ -19,7 +19,8 @@ from roadgpt.errors import EditError
 from roadgpt_training.tokens import tokens_of
 from tables import rows as table_rows
 
-CHANGES = sorted((Path(__file__).resolve().parents[2] / "training" / "data" / "changes").rglob("*.jsonl"))
+DATA = Path(__file__).resolve().parents[2] / "training" / "data" / "changes"
+CHANGES = sorted(path for name in ("train", "validation") for path in (DATA / name).glob("*.jsonl"))
 
 
 def normal(line: str) -> str:

@@ -16,6 +16,7 @@ from roadgpt_training.near_duplicates import near_duplicates
 
 DATA = Path(__file__).resolve().parents[1] / "data"
 CHANGES = sorted((DATA / "changes" / "train").glob("*.jsonl"))
+OF_SCENES = sorted((DATA / "changes" / "scenes").glob("*.jsonl"))
 CONTRASTS = sorted((DATA / "descriptions" / "contrasts").glob("*.jsonl"))
 FREE = sorted((DATA / "descriptions" / "free").glob("*.jsonl"))
 FIELD = sorted((DATA / "field").glob("*/*.jsonl"))
@@ -40,7 +41,9 @@ def letters(row: dict[str, Any]) -> str:
     return re.sub(r"\W+", " ", row.get("text", row.get("request", "")).lower()).strip()
 
 
-@pytest.mark.parametrize("path", [*CHANGES, *CONTRASTS, *FREE, *FIELD], ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path", [*CHANGES, *OF_SCENES, *CONTRASTS, *FREE, *FIELD], ids=lambda path: path.stem
+)
 def test_labels_are_in_the_language_of_plans(path: Path) -> None:
     """Of each file every fifth one; all together take a minute."""
     for row in rows(path)[::5]:
@@ -48,7 +51,7 @@ def test_labels_are_in_the_language_of_plans(path: Path) -> None:
         assert row["family"] == path.stem
         if row["plan"].startswith("!"):
             assert "has no refusal" not in str(refused(row["plan"])), row
-        elif path in CHANGES:
+        elif path in CHANGES or path in OF_SCENES:
             line = change_plan(read_change_plan(row["plan"]))
             assert change_plan(read_change_plan(line)) == line
         else:
@@ -61,6 +64,7 @@ def test_there_are_as_many_as_the_pages_say() -> None:
     said = dict(re.findall(r"^\| `(\w+)` \| (\d+) \|", page, re.MULTILINE))
     assert {path.stem: str(len(rows(path))) for path in FIELD} == said
     assert sum(len(rows(path)) for path in CHANGES) == 13055
+    assert sum(len(rows(path)) for path in OF_SCENES) == 854
     assert sum(len(rows(path)) for path in CONTRASTS) == 3299
     assert sum(len(rows(path)) for path in FREE) == 12740
     assert "12,740 lines" in (DATA / "descriptions" / "README.md").read_text(encoding="utf-8")
@@ -70,7 +74,7 @@ def test_there_are_as_many_as_the_pages_say() -> None:
 
 def test_no_text_is_one_of_a_test_or_stands_twice() -> None:
     judged = {letters(row) for path in JUDGED for row in rows(path)}
-    for paths in (CHANGES, CONTRASTS, FREE):
+    for paths in (CHANGES, OF_SCENES, CONTRASTS, FREE):
         texts = [letters(row) for path in paths for row in rows(path)]
         assert len(texts) == len(set(texts))
         assert not judged & {*texts}
