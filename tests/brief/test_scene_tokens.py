@@ -21,7 +21,8 @@ from roadgpt.errors import RoadGPTError
 from roadgpt_training.field import parted
 from roadgpt_training.tokens import tokens_of
 
-TEXTS = sorted((Path(__file__).resolve().parents[2] / "training" / "data" / "field").glob("*/*.jsonl"))
+DATA = Path(__file__).resolve().parents[2] / "training" / "data" / "field"
+TEXTS = sorted(path for name in ("train", "validation") for path in (DATA / name).glob("*.jsonl"))
 
 
 def test_plans_of_texts_of_the_field_survive_being_cut_into_tokens() -> None:

@@ -19,7 +19,7 @@ CHANGES = sorted((DATA / "changes" / "train").glob("*.jsonl"))
 OF_SCENES = sorted((DATA / "changes" / "scenes").glob("*.jsonl"))
 CONTRASTS = sorted((DATA / "descriptions" / "contrasts").glob("*.jsonl"))
 FREE = sorted((DATA / "descriptions" / "free").glob("*.jsonl"))
-FIELD = sorted((DATA / "field").glob("*/*.jsonl"))
+FIELD = sorted(path for name in ("train", "validation") for path in (DATA / "field" / name).glob("*.jsonl"))
 JUDGED = [
     *(DATA / "fresh").rglob("*.jsonl"),
     *(DATA / "descriptions" / "test").glob("*.jsonl"),
