@@ -48,7 +48,7 @@ from roadgpt.brief.readers.model.vocabulary import (
     value_of,
 )
 from roadgpt.brief.refusal import CLASHING, OF_CAUSES
-from roadgpt.brief.words import Sharpness, Size
+from roadgpt.brief.words import Sharpness, Size, Surroundings
 
 
 @dataclass(frozen=True, slots=True)
@@ -298,11 +298,13 @@ def description(numbers: Numbers) -> Symbol:
     wishes = in_order(
         SHARPNESS,
         one_of(*SLOPES),
+        one_of(*get_args(Surroundings)),
         *map(one_of, ("alternating", "alike", "hard", "motorway", "divided", "left_hand")),
         *(_road_key(key, numbers) for key in ROAD_KEYS),
         *(sequel(one_of(place), clause, one_of(")")) for place in PLACES),
         _beside(),
         sequel(one_of("centre="), one_of(*get_args(CentreLine))),
+        numbers.keyed("speed="),
         least=1,
     )
     whole = sequel(one_of("|"), wishes)
