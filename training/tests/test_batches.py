@@ -19,12 +19,18 @@ def test_padding_adds_zeros_up_to_a_multiple_of_eight(rows: list[list[int]]) -> 
 
 
 def test_batches_hold_every_example_once_and_have_few_shapes() -> None:
-    made = [Example(tuple(range(1, 2 + n % 60)), (1, *range(10, 12 + n % 37), 2)) for n in range(480)]
+    made = [
+        Example((tuple(range(1, 2 + n % 60)),) * (1 + n % 3), (1, *range(10, 12 + n % 37), 2))
+        for n in range(480)
+    ]
     found = list(islice(batches(iter(made), 16, 30, 3), 30))
     kept = sorted(
-        (tuple(int(each) for each in text if each), tuple(int(each) for each in plan if each))
+        (
+            tuple(tuple(int(each) for each in chunk if each) for chunk in text if chunk.any()),
+            tuple(int(each) for each in plan if each),
+        )
         for texts, plans in found
         for text, plan in zip(texts, plans, strict=True)
     )
     assert kept == sorted((each.pieces, each.tokens) for each in made)
-    assert {len(texts[0]) % 8 for texts, _ in found} | {len(plans[0]) % 8 for _, plans in found} == {0}
+    assert {texts.shape[2] % 8 for texts, _ in found} | {len(plans[0]) % 8 for _, plans in found} == {0}

@@ -134,7 +134,7 @@ def test_networks_for_single_roads_learn_no_token_of_routes() -> None:
     pair = Pair("left at the T", "t_junction left", "f", "en")
     road = Pair("a left bend", "turn left", "f", "en")
     assert max(example(pair, pieces).tokens) >= len(OF_ROADS)  # type: ignore[union-attr]
-    written = list(islice(examples(3, [pair, road], pieces, {"hand": 1.0}), 20))
+    written = list(islice(examples(3, [pair, road], pieces), 60))
     assert {max(each.tokens) for each in written} < {*range(len(OF_ROADS))}
 
 

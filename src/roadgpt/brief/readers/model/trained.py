@@ -203,8 +203,8 @@ class Trained:
         """Returns the words that a plan does not depend on, and the numbers that it lacks: spelled as in the
         text, each once, in the order of the text. Of a long text, and of one that tells more than a road, the
         words are only those for other road users, weather and light that the scene lacks."""
-        told = told_in(tokens, text.slots)
-        is_story = len(text.words) > LONG or told != Brief()
+        told = Brief() if text.is_change else told_in(tokens, text.slots)
+        is_story = (len(text.words) > LONG and not text.is_change) or told != Brief()
         idle = frozenset[int]() if is_story else self._idle(text, tokens)
         named = {*without_scene(text, told)} if is_story else set()
         out: list[str] = []
