@@ -52,7 +52,7 @@ HEIGHTS = rows(__file__, "heights")
 ALONG = rows(__file__, "along")
 """Metres along the road, which are no heights."""
 
-REFUSED = [*rows(__file__, "refused"), "x" * 3000]
+REFUSED = [*rows(__file__, "refused"), "x" * 7000]
 
 ROWS = sorted(
     {
@@ -170,8 +170,8 @@ def test_no_row_is_one_that_a_reader_is_trained_on() -> None:
 def test_what_cannot_be_read_at_all_is_refused_with_the_reason() -> None:
     with pytest.raises(EditError, match="no change was asked for"):
         read_request("  ")
-    with pytest.raises(EditError, match="3000 characters is too long"):
-        read_request("x" * 3000)
+    with pytest.raises(EditError, match="7000 characters is too long"):
+        read_request("x" * 7000)
 
 
 @pytest.mark.parametrize(

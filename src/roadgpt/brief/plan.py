@@ -347,10 +347,10 @@ def read_plan(line: str) -> Brief:
     if SCENE in line:
         line, _, scene = line.partition(SCENE)
         return read_plan(line).model_copy(update={"scene": read_scene(scene)})
+    half, word = half_of_route(line), rf"\b{HALFWAY}\b"
+    if re.search(word, line) and not half:
+        raise BriefError("'halfway' in a plan needs the length of the whole route, as in || len=400")
     if BETWEEN in line or is_junction(line):
-        half, word = half_of_route(line), rf"\b{HALFWAY}\b"
-        if re.search(word, line) and not half:
-            raise BriefError("'halfway' in a plan needs the length of the whole route, as in || len=400")
         return _read_network(re.sub(word, half, line))
     road, _, whole = line.partition(WHOLE)
     if is_map(line):

@@ -11,6 +11,7 @@ from math import inf
 from typing import get_args
 
 from roadgpt.brief.beside import BESIDE
+from roadgpt.brief.design_speed import FASTEST, SLOWEST
 from roadgpt.brief.junctions import (
     LANE_KINDS,
     LONGEST_ROUTE,
@@ -198,6 +199,12 @@ class Numbers:
             may_be_empty,
         )
 
+    def design_speed(self) -> Symbol:
+        """Returns the symbol for a design speed, which is one number that a road can have."""
+        given = self._fitting(UNIT_OF["speed="])
+        fit = [each for each in given if SLOWEST <= value_of(each, self.slots) <= FASTEST]
+        return sequel(one_of(*(["speed="] if fit else [])), one_of(*fit))
+
     def percents(self) -> list[str]:
         """Returns the numbers of the text that can be percentages."""
         return self._fitting("percent")
@@ -304,7 +311,7 @@ def description(numbers: Numbers) -> Symbol:
         *(sequel(one_of(place), clause, one_of(")")) for place in PLACES),
         _beside(),
         sequel(one_of("centre="), one_of(*get_args(CentreLine))),
-        numbers.keyed("speed="),
+        numbers.design_speed(),
         least=1,
     )
     whole = sequel(one_of("|"), wishes)

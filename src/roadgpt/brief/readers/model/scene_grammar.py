@@ -58,7 +58,7 @@ def told(numbers: Numbers) -> Symbol:
     """Returns the symbol for a scene and the wishes before it; all of it may be left out."""
     key = numbers.keyed
     origin = sequel(one_of("from="), one_of(*get_args(Compass)))
-    wishes = in_order(one_of(*get_args(Surroundings), "motorway"), origin, key("speed="), least=1)
+    wishes = in_order(one_of(*get_args(Surroundings), "motorway"), origin, numbers.design_speed(), least=1)
     lane = sequel(one_of("lane="), any_of(one_of(*MOST_SAME[:4]), sequel(one_of("-"), one_of("1", "2", "3"))))
     itself = sequel(one_of(TESTED_CAR), in_order(one_of(*SIDES, "straight"), key("v="), lane, least=1))
     parts = [
