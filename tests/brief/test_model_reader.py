@@ -23,6 +23,13 @@ READER = ModelReader()
 MOST_MEGABYTES = 60
 
 
+def test_what_stands_behind_the_read_part_of_a_long_text_is_named() -> None:
+    long = "The road begins with a straight of 80 m along fields where the old mill stands in the sun. " * 6
+    read = READER.read(f"{long}Then it climbs steeply over a crest, with a chicane before it.")
+    assert {"climbs", "steeply", "crest", "chicane"} <= {*read.unused}
+    assert read.confidence < SURE
+
+
 @pytest.mark.parametrize(
     "words", ["", "   ", "x" * 7000, "what time is it in Paris", "a climb of 60 percent"]
 )

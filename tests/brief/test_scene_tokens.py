@@ -75,6 +75,7 @@ def test_whatever_the_network_may_write_of_scenes_is_read_or_refused_in_one_sent
     [
         ("a 2004 Ford at 50 mph", "a year ford at [unused1] kmh", [80.5]),
         ("a 43-year-old at 18:40 on 12 May 2012", "a age - year - old at time : time on date may date", []),
+        ("a driver aged 43", "a driver aged age", []),
         ("I-95 and Route 66", "i - number and route number", []),
         ("brakes with 8 m/s2, then 0.4 g", "brakes with [unused1] mps2 , then [unused2] mps2", [8.0, 3.9]),
         ("15 m/s", "[unused1] kmh", [54.0]),
@@ -111,9 +112,11 @@ def test_a_scene_joins_its_road_and_replaces_what_was_named_beside_it() -> None:
     )
     gentle = joined(read_plan("turn left r=400"), told)
     assert (gentle.surroundings, gentle.speed) == ("country", 80)
-    assert plan(with_named(read_plan("turn | beside(kerb, night)"))) == "turn | beside(kerb) && night"
+    named = with_named(read_plan("turn | beside(kerb, night, snow, ice)"))
+    assert plan(named) == "turn | beside(kerb, ice) && night; snow"
 
 
 def test_road_users_that_the_scene_lacks_are_named() -> None:
     text = slotted("a truck ahead at 60 km/h, a bus stop, a cyclist, after 300 m")
-    assert [*without_scene(text, read_plan("&& truck ahead v=60"))] == ["cyclist"]
+    assert [*without_scene(text, read_plan("&& truck ahead v=60"), ())] == ["cyclist"]
+    assert [*without_scene(text, read_plan("turn"), ["cyclist"])] == ["truck"]

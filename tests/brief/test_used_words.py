@@ -17,6 +17,8 @@ REASONS = {"up": {"uphill", "climbing"}, "turn": {"turns", "bends"}, "3": {"3"}}
 class Mind:
     """A stand-in for the network: a token is likely if a word for it is there."""
 
+    has_scenes = False
+
     def chances_of(
         self, texts: Sequence[SlottedText], tokens: Sequence[str], allowed: SlottedText
     ) -> tuple[np.ndarray, np.ndarray]:

@@ -161,8 +161,10 @@ class NeuralNetwork:
         return np.concatenate(found, axis=4)
 
     def chunks(self, text: SlottedText) -> list[list[int]]:
-        """Returns the numbers of the pieces of a text, chunk by chunk."""
-        return self.pieces.encode(word.text for word in text.words)
+        """Returns the numbers of the pieces of a text, chunk by chunk; of the first chunk only, if the
+        network was not trained with long texts, as none was that cannot write scenes."""
+        chunks = self.pieces.encode(word.text for word in text.words)
+        return chunks if self.has_scenes else chunks[:1]
 
     def chances_of(
         self, texts: Sequence[SlottedText], tokens: Sequence[str], allowed: SlottedText

@@ -1,7 +1,8 @@
 """What stands among a description beside the shape of its road: the scene, the kind of road, its design speed
 and where one comes from. In the tokens of a plan it follows the road; here both are put together."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
 
 from roadgpt.brief.feasible import is_possible
 from roadgpt.brief.languages import TABLE
@@ -20,7 +21,6 @@ are."""
 BEHIND = frozenset(["stop", "stops", "lane", "lanes", "bay", "bays", "shelter", "crossing"])
 """Words before which "bus", "bicycle" or "pedestrian" names a thing beside the road."""
 NAMED: Mapping[str, Scene] = {
-    "traffic": Scene(flow="medium"),
     "night": Scene(light="night"),
     "wet": Scene(surface="wet"),
     "snow": Scene(surface="snow"),
@@ -29,7 +29,8 @@ NAMED: Mapping[str, Scene] = {
     "bridge": Scene(landscape=(Land(kind="bridge"),)),
     "tunnel": Scene(landscape=(Land(kind="tunnel"),)),
 }
-"""What some of the names that a network gives beside a road are as a scene."""
+"""What some of the names that a network gives beside a road are as a scene. How dense traffic is, they do not
+tell."""
 AS_SCENE: Mapping[str, tuple[str, ...]] = {
     "traffic": ("flow", "oncoming"),
     "pedestrian": ("adult", "child"),
@@ -106,19 +107,25 @@ def joined(road: Brief, told: Brief) -> Brief:
 
 
 def with_named(brief: Brief) -> Brief:
-    """Returns a Brief in which the scene has what one name beside the road says, if there is no scene yet."""
-    scenes = [NAMED[name] for name in brief.beside if name in NAMED]
-    if len(scenes) != 1 or brief.scene != Scene():
+    """Returns a Brief in which the scene has what the names beside the road say, if there is no scene yet. Of
+    two that exclude each other, such as snow and ice, the second stays beside the road."""
+    if brief.scene != Scene():
         return brief
-    return brief.model_copy(
-        update={"scene": scenes[0], "beside": tuple(name for name in brief.beside if name not in NAMED)}
-    )
+    fields, beside = dict[str, Any](), list[str]()
+    for name in brief.beside:
+        told = NAMED.get(name, Scene())
+        new = {field: value for field, value in told if value != getattr(Scene(), field)}
+        if not new or any(fields.get(field, value) != value for field, value in new.items()):
+            beside.append(name)
+        else:
+            fields |= new
+    return brief.model_copy(update={"scene": Scene(**fields), "beside": tuple(beside)})
 
 
-def without_scene(text: SlottedText, brief: Brief) -> Iterator[str]:
-    """Yields, as they are written, the words of a text for other road users, weather and light that the scene
-    lacks."""
-    there = things_in(brief)
+def without_scene(text: SlottedText, told: Brief, beside: Iterable[str]) -> Iterator[str]:
+    """Yields, as they are written, the words of a text for other road users, weather and light that neither
+    the scene has nor a name beside the road."""
+    there = things_in(told).union(*(AS_SCENE.get(name, ()) for name in beside))
     for word, after in zip(text.words, (*text.words[1:], None), strict=True):
         if after is None or after.text not in BEHIND:
             names = [name for name, words in NAMES.items() if word.text in words]

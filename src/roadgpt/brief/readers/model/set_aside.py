@@ -23,7 +23,7 @@ def stands_for(tokens: Sequence[str], first: int, last: int) -> str:
     after = [each for each in tokens[last + 1 : last + 1 + NEAR] if each not in "-.,'"]
     if first != last or not said[0].isdecimal():
         return "age" if AGES.intersection(after[:1]) and _is_age(after) else ""
-    if AGES.intersection(after[:1]) and _is_age(after):
+    if before[-1:] == ["aged"] or (AGES.intersection(after[:1]) and _is_age(after)):
         return "age"
     if not MONTHS.isdisjoint([*before[-1:], *after[:1]]) or _is_of_date(tokens, first):
         return "date"

@@ -201,12 +201,13 @@ class Trained:
 
     def unused(self, text: SlottedText, tokens: Sequence[str]) -> tuple[str, ...]:
         """Returns the words that a plan does not depend on, and the numbers that it lacks: spelled as in the
-        text, each once, in the order of the text. Of a long text, and of one that tells more than a road, the
-        words are only those for other road users, weather and light that the scene lacks."""
+        text, each once, in the order of the text. Words for other road users, weather and light always count
+        as unused if the plan has nothing of the kind; other words are not looked at where the plan tells more
+        than a road, or the text is long and the network can write scenes."""
         told = Brief() if text.is_change else told_in(tokens, text.slots)
-        is_story = (len(text.words) > LONG and not text.is_change) or told != Brief()
+        is_story = told != Brief() or (self.network.has_scenes and len(text.words) > LONG)
         idle = frozenset[int]() if is_story else self._idle(text, tokens)
-        named = {*without_scene(text, told)} if is_story else set()
+        named = set[str]() if text.is_change else {*without_scene(text, told, tokens)}
         out: list[str] = []
         missing, slot = lost(tokens, text), 0
         for place, word in enumerate(text.words):
