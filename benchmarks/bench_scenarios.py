@@ -26,7 +26,7 @@ from typing import Any
 
 from roadgpt.brief.model import mirrored
 from roadgpt.brief.plan import read_plan
-from roadgpt.brief.scenarios import LANE_WIDTH, MIRRORED, scenarios
+from roadgpt.brief.scenarios import LANE_WIDTH, scenarios
 from roadgpt.errors import DesignError, UsageError
 from roadgpt.road import World
 from roadgpt.run import Run, Setup, perform
@@ -83,7 +83,7 @@ def main() -> None:
     referee = importlib.import_module("referee_traffic")
     truths = (TRUTHS / "catalogue.json").read_text()
     if given.left_hand:
-        truths = re.sub(r"\b(?:left|right)\b", lambda side: MIRRORED[side[0]], truths)
+        truths = re.sub(r"\b(?:left|right)\b", lambda side: "right" if side[0] == "left" else "left", truths)
     catalogue = json.loads(truths)["scenarios"]
     roads = json.loads((TRUTHS / "roads.json").read_text())["roads"] if given.roads else [None]
     roads = roads[given.road - 1 : given.road] if given.road else roads

@@ -7,6 +7,7 @@ import sys
 from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
+from importlib.util import find_spec
 from itertools import groupby
 from pathlib import Path
 
@@ -212,6 +213,24 @@ def test_annexes_use_only_what_the_python_page_lists() -> None:
                 elif isinstance(node, ast.Import):
                     used |= {alias.name for alias in node.names if alias.name.startswith("roadgpt.")}
     assert used == listed
+
+
+def test_benchmarks_import_only_what_is_there() -> None:
+    """They are run by hand, so nothing else would tell that a name has moved away."""
+    missing = [
+        f"{path.name}: {part.module}.{name.name}"
+        for path in [*ROOT.glob("benchmarks/*.py"), *ROOT.glob("training/benchmarks/*.py")]
+        for part in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(part, ast.ImportFrom) and (part.module or "").startswith("roadgpt")
+        for name in part.names
+        if not offers(str(part.module), name.name)
+    ]
+    assert not missing
+
+
+def offers(module: str, name: str) -> bool:
+    found = import_module(module)
+    return hasattr(found, name) or (hasattr(found, "__path__") and find_spec(f"{module}.{name}") is not None)
 
 
 def test_no_text_names_a_place_on_one_machine() -> None:
