@@ -173,7 +173,7 @@ def train(
     if weights and installed:
         raise UsageError("a training starts from --weights or from what is --installed; name one of them")
     pairs = [*_all_pairs(hand, TRAINED_ON, changes, networks, "train"), *(_pairs_of(own) if own else [])]
-    pairs += _of_field(field / "train")
+    pairs += [*_of_field(field / "train"), *_of_field(changes / "scenes", is_change=True)]
     pairs += islice(measured_pairs(seed), MEASURED)
     pieces = begin(out, weights, WEIGHTS if installed else None)
     start = weights / "model.safetensors" if weights else WEIGHTS if installed else None
@@ -222,14 +222,20 @@ def _held_back(hand: Path, changes: Path, networks: Path, field: Path) -> "list[
     from roadgpt_training.data import is_for_roads_only
 
     told = _all_pairs(hand, HELD_BACK, changes, networks, "validation")
-    return [*(pair for pair in told if not is_for_roads_only(pair)), *_of_field(field / "validation")]
+    of_field = [
+        *_of_field(field / "validation"),
+        *_of_field(changes / "scenes_validation", is_change=True),
+    ]
+    return [*(pair for pair in told if not is_for_roads_only(pair)), *of_field]
 
 
-def _of_field(place: Path) -> "list[Pair]":
-    """Returns the texts of the field in a folder; a mark in the family says that they are of the field."""
+def _of_field(place: Path, is_change: bool = False) -> "list[Pair]":
+    """Returns the texts of the field, or the requests that change a scene, in a folder; a mark in the family
+    says that they are of the field.
+    """
     from roadgpt_training.field import FIELD
 
-    return [replace(pair, family=f"{FIELD}{pair.family}") for pair in _pairs_of(place)]
+    return [replace(pair, family=f"{FIELD}{pair.family}") for pair in _pairs_of(place, is_change)]
 
 
 def _all_pairs(hand: Path, folders: Sequence[str], changes: Path, networks: Path, part: str) -> list["Pair"]:

@@ -59,6 +59,8 @@ class Calibration(NetworkCalibration):
 
     changes: dict[str, float]
     """The weights of the confidence model for change requests."""
+    scene_changes: dict[str, float]
+    """The same for those that the network for routes reads, because they change a scene."""
     routes: NetworkCalibration | None
 
 
@@ -71,10 +73,13 @@ def calibrated(reader: ModelReader, pairs: Sequence[Pair]) -> Calibration:
     honest = [pair for pair in pairs if not pair.is_refusal]
     words = [pair for pair in honest if not pair.is_change]
     of_routes = [pair for pair in words if _is_route(pair)]
-    asked = [(_read_change(reader, pair.text), normal_change(pair.plan)) for pair in honest if pair.is_change]
+    asked = [pair for pair in honest if pair.is_change]
+    of_road = [pair for pair in asked if not pair.family.startswith(FIELD)]
+    of_scene = [pair for pair in asked if pair.family.startswith(FIELD)]
     return {
         **calibrated_network(reader, reader.roads, [pair for pair in words if not _is_route(pair)]),
-        "changes": _weights([(looks, looks.plan == right) for looks, right in asked if looks]),
+        "changes": _weights(_changes_read(reader.roads, of_road)),
+        "scene_changes": _weights(_changes_read(reader.routes, of_scene) if reader.routes else ()),
         "routes": None if reader.routes is None else calibrated_network(reader, reader.routes, of_routes),
     }
 
@@ -101,11 +106,18 @@ def _read(reader: ModelReader, words: str) -> UncalibratedReading | None:
     return UncalibratedReading(plan(draft.asks), features(draft, text))
 
 
-def _read_change(reader: ModelReader, words: str) -> UncalibratedReading | None:
-    """Returns the likeliest plan of a change request, in normal form; None if no plan could be read."""
-    text = slotted(words, is_change=True)
-    found = scored_plans(reader.roads.network, text, NEVER, changes_in(normal_change))
-    return UncalibratedReading(found[0].asks or "", features(found[0], text)) if found else None
+def _changes_read(trained: Trained, pairs: Sequence[Pair]) -> list[tuple[UncalibratedReading, bool]]:
+    """Returns the readings of change requests by a network, each with whether it is right; those of which no
+    plan could be read are left out.
+    """
+    out: list[tuple[UncalibratedReading, bool]] = []
+    for pair in pairs:
+        text = slotted(pair.text, is_change=True)
+        found = scored_plans(trained.network, text, NEVER, changes_in(normal_change))
+        if found:
+            looks = UncalibratedReading(found[0].asks or "", features(found[0], text))
+            out.append((looks, looks.plan == normal_change(pair.plan)))
+    return out
 
 
 def _is_route(pair: Pair) -> bool:

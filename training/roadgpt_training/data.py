@@ -50,8 +50,10 @@ SHARES: Mapping[str, Mapping[str, float]] = {
     },
     "routes": {
         "networks": 0.17,
-        "field": 0.46,
-        "composed": 0.10,
+        "field": 0.40,
+        "composed": 0.08,
+        "scene changes": 0.05,
+        "changes": 0.03,
         "generated routes": 0.12,
         "routes": 0.04,
         "hand": 0.04,
@@ -64,7 +66,8 @@ SHARES: Mapping[str, Mapping[str, float]] = {
 }
 """The share of each series of pairs in the training of each network. ``networks`` are hand-written routes
 with junctions, ``routes`` join these to hand-written roads, ``generated ...`` come from grammars, ``field``
-are texts of the field, and ``composed`` join those that tell only a scene to roads.
+are texts of the field, and ``composed`` join those that tell only a scene to roads; ``scene changes`` are
+requests that change a scene.
 """
 TOKENS_OF = {"roads": OF_ROADS, "routes": TOKENS}
 """The tokens that each network knows."""
@@ -112,10 +115,11 @@ def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = No
     the network learns nothing about the token after the refusal.
     """
     taken = slotted(pair.text, pair.is_change)
-    plan, told = parted(pair.plan) if pair.family.startswith(FIELD) else (pair.plan, "")
+    is_of_field = pair.family.startswith(FIELD) and not pair.is_change
+    plan, told = parted(pair.plan) if is_of_field else (pair.plan, "")
     plan = plan if pair.is_change else with_shared_values(_without_motorway(plan), taken.slots)
     compared = None if pair.is_change else Compared.of(taken.text)
-    of_road, of_told = tokens_of(plan, taken.slots, compared), tokens_of(told, taken.slots)
+    of_road, of_told = tokens_of(plan, taken.slots, compared, pair.is_change), tokens_of(told, taken.slots)
     if of_road is None or of_told is None:
         return None
     tokens = [*of_road, *of_told]
@@ -165,7 +169,7 @@ def examples(
         is_of_field = name in ("field", "composed")
         if not (pair.is_change or is_of_field) and rng.random() < MENTIONS:
             pair = with_mention(pair, rng) or pair
-        if pair.is_change and rng.random() < ASIDES:
+        if pair.is_change and name != "scene changes" and rng.random() < ASIDES:
             pair = with_asides(pair, rng)
         elif rng.random() < TALK:
             pair = replace(pair, text=with_talk(pair.text, pair.lang, rng))
@@ -200,6 +204,8 @@ def _streams(seed: int, hand: Sequence[Pair]) -> dict[str, Iterator[Pair]]:
     kinds = grouped(hand, _kind)
     for kind, its in kinds.items():
         found[kind] = _varied(its, np.random.default_rng([seed, len(kind)]))
+    if "scene changes" in kinds:
+        found["scene changes"] = varied(kinds["scene changes"], np.random.default_rng([seed, 11]))
     if "networks" in kinds:
         roads = [pair for kind in ("hand", "free") for pair in kinds.get(kind, ())]
         joined = routes(roads, kinds["networks"], np.random.default_rng([seed, 4]))
@@ -213,9 +219,11 @@ def _streams(seed: int, hand: Sequence[Pair]) -> dict[str, Iterator[Pair]]:
 
 
 def _kind(pair: Pair) -> str:
+    if pair.is_change:
+        return "scene changes" if pair.family.startswith(FIELD) else "changes"
     if pair.family.startswith((NETWORK, FIELD)):
         return "networks" if pair.family.startswith(NETWORK) else "field"
-    return "changes" if pair.is_change else KINDS_OF_FAMILIES.get(pair.family[:2], "hand")
+    return KINDS_OF_FAMILIES.get(pair.family[:2], "hand")
 
 
 def _varied(hand: Sequence[Pair], rng: np.random.Generator) -> Iterator[Pair]:

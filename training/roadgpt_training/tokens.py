@@ -32,9 +32,11 @@ from roadgpt.brief.readers.model.vocabulary import (
     WAYS,
     Compared,
     exact_factor,
+    usual_key,
     value_of,
+    with_keys,
 )
-from roadgpt.brief.scene import WEATHER
+from roadgpt.brief.scene import DOINGS, WEATHER
 
 PIECE = re.compile(
     r"//|\|\||&&|![a-z]+|(?:left|right)(?:\+(?:right|straight))+|[a-z_]+\(|[a-z_]+=|x(?=-?[\d.])|half[12]|\.\.|-?\d+(?:\.\d+)?|[a-z_]+|[;|):,=+]|-(?=\d)"
@@ -52,26 +54,33 @@ CLOSE = 0.0051
 """A factor is taken for a number in the text, or for a usual factor, if it differs by less than this."""
 
 
-def tokens_of(plan: str, slots: Sequence[NumberSlot], compared: Compared | None = None) -> list[str] | None:
-    """Returns the tokens of a plan; None if the plan has a number for which there is neither a slot nor a
-    token. Without ``compared``, no number is computed from others.
+def tokens_of(
+    plan: str, slots: Sequence[NumberSlot], compared: Compared | None = None, is_change: bool = False
+) -> list[str] | None:
+    """Returns the tokens of a plan, or of a plan of changes; None if the plan has a number for which there is
+    neither a slot nor a token. Without ``compared``, no number is computed from others.
     """
     out: list[str] = []
     key = ""
     taken: dict[int, str] = {}
     known = compared.plain if compared else frozenset()
     line = WAYS.sub(lambda ways: ways[0].replace("+", " "), _with_halfway(plan))
+    if is_change:
+        line = with_keys(line)
     for token, said in UNSAID.items():
         line = line.replace(said, token)
     for piece in PIECE.findall(LISTED.sub(" ", line)):
         if NUMERIC.fullmatch(piece):
-            if out[-1] == "x" and key in MEASURED:
+            is_of_scene = is_change and SCENE in out
+            if out[-1] == "x" and (key in MEASURED or (is_of_scene and key)):
                 found = _factor_tokens(float(piece), slots)
                 out.pop()
             else:
                 is_count = out[-1] in ("x", *NOUNS, *KINDS, *NUMBERS)
-                said = f"{float(piece) / SCALES[key]:.1f}" if key in SCALES else piece
-                found = _number_tokens(said, "" if is_count else key, slots, taken)
+                found = _number_tokens(piece, "" if is_count else key, slots, taken)
+                if key in SCALES and not is_count:
+                    scaled = _number_tokens(f"{float(piece) / SCALES[key]:.1f}", key, slots, taken)
+                    found = scaled if scaled and scaled[-1] in SLOT_TOKENS else found
                 is_said = found is not None and (found[-1] in SLOT_TOKENS or found[-1] in known)
                 if compared and key in KEYS and not (is_count or is_said or "roundabout" in out):
                     sign, value = ["-"] * piece.startswith("-"), abs(float(piece))
@@ -89,6 +98,10 @@ def tokens_of(plan: str, slots: Sequence[NumberSlot], compared: Compared | None 
             key = piece
         elif piece in WEATHER:
             key = f"{piece}="
+        elif is_change and SCENE in out and piece in DOINGS:
+            key = usual_key(piece)
+        elif is_change and SCENE in out and piece == ":" and key in (f"{name}=" for name in WEATHER):
+            pass  # "fog: =50" changes the number of the fog
         elif piece not in ("..", "=", "+", "-", "x", *SLOPES):
             key = ""
         out.append(ORDER if piece in OF_ORDER and SCENE not in out else piece)

@@ -16,7 +16,9 @@ from roadgpt_training.near_duplicates import near_duplicates
 
 DATA = Path(__file__).resolve().parents[1] / "data"
 CHANGES = sorted((DATA / "changes" / "train").glob("*.jsonl"))
-OF_SCENES = sorted((DATA / "changes" / "scenes").glob("*.jsonl"))
+OF_SCENES = sorted(
+    path for name in ("scenes", "scenes_validation") for path in (DATA / "changes" / name).glob("*.jsonl")
+)
 CONTRASTS = sorted((DATA / "descriptions" / "contrasts").glob("*.jsonl"))
 FREE = sorted((DATA / "descriptions" / "free").glob("*.jsonl"))
 FIELD = sorted(path for name in ("train", "validation") for path in (DATA / "field" / name).glob("*.jsonl"))

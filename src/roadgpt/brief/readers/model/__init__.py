@@ -16,7 +16,7 @@ import numpy as np
 
 from roadgpt.brief.feasible import is_possible
 from roadgpt.brief.model import Brief
-from roadgpt.brief.plan import plan
+from roadgpt.brief.plan import SCENE, plan
 from roadgpt.brief.readers.model.before import (
     COMPANIONS,
     asks_for_a_closed_loop,
@@ -120,13 +120,18 @@ class ModelReader:
         can be read. ``key`` returns the normal form of a plan of changes, or raises an error for an invalid
         one."""
         text = slotted(words, is_change=True)
-        found = scored_plans(self.roads.network, text, self.roads.refuse_from, changes_in(key))
+        trained, weights = self.roads, self._settings["changes"]
+        found = scored_plans(trained.network, text, trained.refuse_from, changes_in(key))
+        if self.routes and self.routes.network.has_scenes:
+            of_scene = scored_plans(self.routes.network, text, self.routes.refuse_from, changes_in(key))
+            if of_scene and SCENE in of_scene[0].tokens:
+                trained, weights, found = self.routes, self._settings.get("scene_changes", {"bias": 0.0}), of_scene
         if not found:
             raise BriefError("this could not be read as changes; use shorter sentences")
         draft, *rest = found
         others = tuple(each.asks for each in rest if each.asks and each.score >= draft.score - LIKELY)
-        unused = self.roads.unused(text, draft.tokens) if draft.asks else ()
-        sure = confidence(self._settings["changes"], features(draft, text), unused, text)
+        unused = trained.unused(text, draft.tokens) if draft.asks else ()
+        sure = confidence(weights, features(draft, text), unused, text)
         return ChangeReading(draft.asks or draft.refusal, sure, unused, others)
 
     def alternatives(

@@ -362,9 +362,10 @@ def _junction(numbers: Numbers) -> Symbol:
     ways, *ends = (sequel(one_of(key), listed) for key in ("ways=", "in=", "out=", "turn_lane="))
     degrees, angle, taper = map(numbers.keyed, ("deg=", "angle=", "taper="))
     exit_, arms, lanes, outer = map(numbers.keyed, ("exit=", "arms=", "lanes=", "outer="))
+    turn_length = numbers.keyed("turn_len=")
     radius = any_of(numbers.keyed("r="), numbers.keyed("d="))
     forms: tuple[tuple[Sequence[str], tuple[Symbol, ...]], ...] = (
-        (JUNCTIONS, (takes, CONTROLS, *FLAGS, ways, *ends, degrees, angle, arms)),
+        (JUNCTIONS, (takes, CONTROLS, *FLAGS, ways, *ends, turn_length, degrees, angle, arms)),
         (
             [ROUNDABOUT],
             (
@@ -502,7 +503,7 @@ def _climb(numbers: Numbers) -> Symbol:
     found = one_of(*metres)
     exact = sequel(one_of("="), any_of(found, sequel(one_of(MINUS), found)))
     by = sequel(one_of("+", MINUS), found)
-    return any_of(*((exact, by) if metres else ()), *_factors(numbers))
+    return any_of(*((exact, by) if metres else ()), *factors(numbers))
 
 
 def _value(name: str, numbers: Numbers, like: Symbol) -> Symbol:
@@ -514,14 +515,15 @@ def _value(name: str, numbers: Numbers, like: Symbol) -> Symbol:
     return any_of(
         sequel(one_of("=", BOUND), any_of(*figures, like)),
         *(sequel(one_of("+", MINUS), figure, other) for figure in figures),
-        *(sequel(factor, other) for factor in _factors(numbers)),
+        *(sequel(factor, other) for factor in factors(numbers)),
         sequel(one_of("slightly", "much"), one_of("more", "less")),
         one_of("more", "less"),
         *(sequel(each, one_of(BOUND)) for each in (*figures, like)),
     )
 
 
-def _factors(numbers: Numbers) -> list[Symbol]:
+def factors(numbers: Numbers) -> list[Symbol]:
+    """Returns the symbols for a factor, as a share of the text or as a usual one."""
     found = numbers.percents()
     shares = [sequel(one_of(*PERCENTS), one_of(*found))] if found else []
     return [*shares, sequel(one_of("x"), one_of(*FACTORS, *found))]

@@ -19,7 +19,7 @@ from roadgpt.brief.readers.model.grammar import (
     description,
 )
 from roadgpt.brief.readers.model.onnx_runtime import onnxruntime
-from roadgpt.brief.readers.model.scene_grammar import whole
+from roadgpt.brief.readers.model.scene_grammar import any_change, whole
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, REFUSALS, TOKENS
 from roadgpt.errors import PartError
@@ -102,7 +102,8 @@ class WrittenPlan:
     def of(cls, text: SlottedText, has_scenes: bool) -> Self:
         """Returns an empty plan for a text; ``has_scenes`` is whether the network can write scenes."""
         said = frozenset(word.text for word in text.words)
-        asked = change_request if text.is_change else whole if has_scenes else description
+        changes, told = (any_change, whole) if has_scenes else (change_request, description)
+        asked = changes if text.is_change else told
         return cls(PlanAutomaton(text.slots, said, Evidence.of(text.text), asked))
 
     @property

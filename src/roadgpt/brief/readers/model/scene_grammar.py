@@ -8,21 +8,26 @@ What follows what comes from the tables of ``brief.scene``, by which plans are r
 
 from collections.abc import Sequence
 from functools import cache, partial
-from typing import get_args
+from typing import cast, get_args
 
+from roadgpt.brief.amount import Frozen
 from roadgpt.brief.plan import SCENE, TESTED_CAR
 from roadgpt.brief.readers.model.grammar import (
+    MOST_CHANGES,
     Numbers,
     Stack,
     Symbol,
     any_of,
+    change_request,
     description,
+    factors,
     in_order,
     later,
+    list_tail,
     one_of,
     sequel,
 )
-from roadgpt.brief.readers.model.vocabulary import RAINS, WISHES
+from roadgpt.brief.readers.model.vocabulary import RAINS, WISHES, value_of
 from roadgpt.brief.scene import (
     ANYTHING,
     CUES,
@@ -34,9 +39,11 @@ from roadgpt.brief.scene import (
     STRUCTURES,
     ActorKind,
     Flow,
+    Land,
     Landform,
     Lie,
     Light,
+    Patch,
     Role,
     Surface,
     What,
@@ -47,6 +54,9 @@ from roadgpt.brief.words import Compass, Surroundings
 MOST_ACTORS, MOST_PATCHES, MOST_LANDS, MOST_ACTIONS = 6, 2, 5, 4
 MOST_SAME = tuple(map(str, range(1, 10)))
 SIDES = ("left", "right")
+ONE_SIDE = one_of(*SIDES, "opposite")
+WHICH = (*(any_of(one_of(*MOST_SAME), sequel(one_of("-"), one_of(*MOST_SAME))) for _ in range(3)), one_of("all"))
+"""Which of several alike things are meant."""
 
 
 def whole(numbers: Numbers) -> Symbol:
@@ -56,13 +66,23 @@ def whole(numbers: Numbers) -> Symbol:
 
 def told(numbers: Numbers) -> Symbol:
     """Returns the symbol for a scene and the wishes before it; all of it may be left out."""
-    key = numbers.keyed
     origin = sequel(one_of("from="), one_of(*get_args(Compass)))
     wishes = in_order(one_of(*get_args(Surroundings), "motorway"), origin, numbers.design_speed(), least=1)
+    scene = sequel(one_of(SCENE), _joined([_tested_car(numbers), *_parts(numbers)]))
+    both = any_of(sequel(one_of(WISHES), wishes, Symbol(scene.first, scene.after, True)), scene)
+    return Symbol(both.first, both.after, may_be_empty=True)
+
+
+def _tested_car(numbers: Numbers) -> Symbol:
     lane = sequel(one_of("lane="), any_of(one_of(*MOST_SAME[:4]), sequel(one_of("-"), one_of("1", "2", "3"))))
-    itself = sequel(one_of(TESTED_CAR), in_order(one_of(*SIDES, "straight"), key("v="), lane, least=1))
-    parts = [
-        itself,
+    ways = one_of(*SIDES, "straight")
+    return sequel(one_of(TESTED_CAR), in_order(one_of("robot"), ways, numbers.keyed("v="), lane, least=1))
+
+
+def _parts(numbers: Numbers) -> list[Symbol]:
+    """Returns the symbols for the parts of a scene, in their order, but for the tested car."""
+    key = numbers.keyed
+    return [
         *[_actor(numbers)] * MOST_ACTORS,
         one_of(*get_args(Flow)),
         sequel(one_of("oncoming"), one_of(*get_args(Flow), "none")),
@@ -74,9 +94,6 @@ def told(numbers: Numbers) -> Symbol:
         *[sequel(one_of("slippery"), in_order(*map(key, ("mu=", "s=", "len="))))] * MOST_PATCHES,
         *[_land(numbers)] * MOST_LANDS,
     ]
-    scene = sequel(one_of(SCENE), _joined(parts))
-    both = any_of(sequel(one_of(WISHES), wishes, Symbol(scene.first, scene.after, True)), scene)
-    return Symbol(both.first, both.after, may_be_empty=True)
 
 
 def _joined(parts: Sequence[Symbol]) -> Symbol:
@@ -172,3 +189,77 @@ def _land(numbers: Numbers) -> Symbol:
     lies = in_order(count, one_of(*get_args(Lie)), one_of(*SIDES), length)
     forms = [form for form in get_args(Landform) if form not in STRUCTURES]
     return any_of(structures, sequel(one_of(*forms), lies))
+
+
+def any_change(numbers: Numbers) -> Symbol:
+    """Returns the symbol for a request that changes the road, the scene or both."""
+    change = _scene_change(numbers)
+    scene = sequel(one_of(SCENE), change, list_tail(";", change, MOST_CHANGES - 1))
+    road = sequel(change_request(numbers), Symbol(scene.first, scene.after, True))
+    return any_of(road, scene)
+
+
+def _scene_change(numbers: Numbers) -> Symbol:
+    """Returns the symbol for one change of a scene: what is added, or something and what is to be of it."""
+    actor = any_of(
+        sequel(one_of("add"), _actions([*DOINGS], [], 1, numbers)),
+        sequel(one_of("as"), in_order(one_of(*get_args(ActorKind)), one_of(*SPOTS), ONE_SIDE, least=1)),
+        Symbol(lambda: DOINGS, lambda what: (_of_doing(cast(What, what), numbers),)),
+        *_of_thing(Role, numbers),
+    )
+    levels = one_of(*get_args(Flow), "none")
+    things: dict[tuple[str, ...], tuple[Sequence[Symbol], Symbol]] = {
+        (*get_args(ActorKind), "actor"): ((*WHICH, one_of(*SPOTS), ONE_SIDE), actor),
+        (*get_args(Landform), "landscape"): ((*WHICH, one_of(*SIDES)), any_of(*_of_thing(Land, numbers))),
+        ("slippery",): (WHICH, any_of(*_of_thing(Patch, numbers))),
+        (TESTED_CAR,): ((), any_of(sequel(one_of("v="), _value("v=", numbers)), one_of("remove"))),
+        ("traffic", "oncoming"): ((), any_of(one_of("remove"), levels, *_more_or_less())),
+        ("fog",): ((), any_of(one_of("remove"), _value("fog=", numbers))),
+        ("rain",): ((), any_of(one_of("remove"), _value("rain=", numbers))),
+        ("parked",): ([one_of(*SIDES)], one_of("remove")),
+        (*get_args(Light), *get_args(Surface), "scene"): ((), one_of("remove")),
+    }
+    known = [
+        sequel(one_of(*names), in_order(*which), one_of(":"), wish) for names, (which, wish) in things.items()
+    ]
+    parts = {tuple(part.first()): part for part in _parts(numbers)}  # each kind once
+    return any_of(sequel(one_of("add"), any_of(_tested_car(numbers), *parts.values())), *known)
+
+
+def _of_thing(kind: type[Frozen], numbers: Numbers) -> list[Symbol]:
+    """Returns the symbols for what can be changed of each thing of a kind: its numbers and how many it is."""
+    keys = [NUMBERS[name].key for name in kind.model_fields if name in NUMBERS]
+    count = one_of(*(each for each in numbers.of("x") if value_of(each, numbers.slots) >= 1))
+    counted = any_of(sequel(one_of(".."), count), sequel(count, one_of("..", may_be_empty=True)))
+    is_counted = "count" in kind.model_fields
+    return [
+        one_of("remove"),
+        *([sequel(one_of("x"), counted)] if is_counted else []),
+        *(sequel(one_of(f"{key}="), _value(f"{key}=", numbers)) for key in keys),
+    ]
+
+
+def _of_doing(what: What, numbers: Numbers) -> Symbol:
+    names = [*DOINGS[what].numbers, *(name for name in CUES if name in NUMBERS)]
+    keys = [f"{NUMBERS[name].key}=" for name in names]
+    usual = [_value(keys[0], numbers)] if DOINGS[what].numbers else []
+    return any_of(
+        one_of("remove"), *usual, *(sequel(one_of(key), _value(key, numbers)) for key in dict.fromkeys(keys))
+    )
+
+
+def _value(key: str, numbers: Numbers) -> Symbol:
+    """Returns the symbol for a change of a number: to a figure or a bound, by one or a factor, more or less."""
+    found = numbers.of(key)
+    name = key.removesuffix("=")
+    is_signed = any(number.key == name and number.least < 0 for number in NUMBERS.values())
+    below = [sequel(one_of("-"), one_of(*found))] if is_signed else []
+    exact = sequel(one_of("="), any_of(one_of(*found), *below))
+    figures = [exact, sequel(one_of("..", "+", "-"), one_of(*found))] if found else []
+    bounds = [sequel(one_of(*found), one_of(".."))] if found else []
+    return any_of(*figures, *bounds, *factors(numbers), *_more_or_less())
+
+
+def _more_or_less() -> tuple[Symbol, ...]:
+    less = one_of("more", "less")
+    return sequel(one_of("slightly", "much"), less), less

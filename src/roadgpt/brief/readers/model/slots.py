@@ -46,6 +46,11 @@ STEEPEST = 45.0  # degrees: anything steeper is a turn, or nonsense that the net
 AMBIGUOUS, MILLIONS, JOINTS = word_set("ambiguous"), word_set("millions"), word_set("joints")
 RATIO, TIMES, POINTS = word_set("ratio"), word_set("times"), word_set("points")
 SECONDS = word_set("seconds")
+MILES_PER_HOUR = 1.609344
+IN_MILES, SPEEDING, SLOWING = word_set("in_miles"), word_set("speeding"), word_set("slowing")
+VAGUELY, OF_SPEED, BEHIND_SPEED = word_set("vaguely"), word_set("of_speed"), word_set("behind_speed")
+USUAL_SPEEDS = range(5, 121)
+"""Numbers without a unit that may be miles per hour."""
 SQUARED = (["s²"], ["s", "2"], ["s", "^", "2"], ["s", "/", "s"], ["sec", "2"], ["sec", "^", "2"])
 MOST_G = 1.5
 """The largest number of which "g" is an acceleration; "50 g 3" is 50 m and a left turn of a rally."""
@@ -150,6 +155,42 @@ def take_unit_of_all(numbers: list[Number], tokens: list[str]) -> None:
         if number.is_bare and not is_count(tokens, number) and not is_after_side:
             number.value, number.unit = round(number.value * sizes[0], 1), "metres"
             number.is_bare, number.factor = False, sizes[0]
+
+
+def take_miles_per_hour(numbers: list[Number], tokens: list[str], said: Sequence[str]) -> None:
+    """Treats numbers without a unit that are told as speeds, as in "doing 70 in a 55 zone", as miles per hour,
+    if the description counts in miles, feet or yards or has words of those who do, and has no metric unit."""
+    speeds = {number.factor for number in numbers if number.unit == "kmh"}
+    lengths = {number.factor for number in numbers if number.unit == "metres"}
+    is_metric = any(factor in (1.0, 3.6) for factor in speeds) or not lengths.isdisjoint((1.0, 1000.0))
+    is_in_miles = bool(speeds or lengths) or not IN_MILES.isdisjoint(tokens)
+    if is_metric or not is_in_miles:
+        return
+    was_told = False
+    for index, number in enumerate(numbers):
+        between = tokens[numbers[index - 1].last + 1 : number.first] if index else []
+        goes_on = was_told and between in (["to"], ["-"], ["or"])
+        was_told = (
+            number.is_bare and not number.unit and number.value in USUAL_SPEEDS
+            and (goes_on or _is_told_as_speed(number, tokens, said))
+            and not stands_for(tokens, number.first, number.last)
+        )  # fmt: skip
+        if was_told:
+            number.value, number.unit = round(number.value * MILES_PER_HOUR, 1), "kmh"
+            number.is_bare, number.factor = False, MILES_PER_HOUR
+
+
+def _is_told_as_speed(number: Number, tokens: Sequence[str], said: Sequence[str]) -> bool:
+    after = [*tokens[number.last + 1 : number.last + 3], "", ""]
+    if after[0] in OF_SPEED or (after[0] == "as" and after[1] in ("posted", "allowed")):
+        return True
+    before = [each for each in tokens[max(number.first - 6, 0) : number.first] if each not in VAGUELY]
+    is_clear = not after[0].isalpha() or (after[0] in BEHIND_SPEED and said[number.last + 1].islower())
+    if not before or not is_clear or after[0] in ("%", "/", ":"):
+        return False
+    is_slowing = before[-1] in ("to", "from") and not SLOWING.isdisjoint(before[-4:-1])
+    is_in_a = before[-2:] in (["in", "a"], ["in", "the"]) and not after[0].isalpha()
+    return before[-1] in SPEEDING or is_slowing or is_in_a
 
 
 def is_count(tokens: Sequence[str], number: Number) -> bool:
@@ -475,6 +516,8 @@ def slotted(text: str, is_change: bool = False) -> SlottedText:
     numbers = [each for n, each in enumerate(numbers) if not n or each.first > numbers[n - 1].last]
     share_units(numbers, tokens)
     take_unit_of_all(numbers, tokens)
+    if not is_change:
+        take_miles_per_hour(numbers, tokens, said)
     numbers = with_tolerances(numbers, tokens)
     for number in numbers:
         as_grade(number, tokens)

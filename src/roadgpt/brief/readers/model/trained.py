@@ -18,7 +18,7 @@ from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.ring_sizes import LEAST, diameters
 from roadgpt.brief.readers.model.scenes import asked_in, told_in, without_scene
 from roadgpt.brief.readers.model.slots import NumberSlot, SlottedText, Word
-from roadgpt.brief.readers.model.vocabulary import REFUSALS, ROUNDABOUT, SLOT_TOKENS, plan_of
+from roadgpt.brief.readers.model.vocabulary import REFUSALS, ROUNDABOUT, SLOT_TOKENS, change_of
 from roadgpt.brief.words import SURE
 from roadgpt.errors import RoadGPTError
 
@@ -98,7 +98,7 @@ def scored_plans(
 def changes_in(key: Callable[[str], str]) -> Callable[[Sequence[str], Sequence[NumberSlot]], str]:
     """Returns the function that reads the tokens of changes, as ``scored_plans`` needs it; ``key`` returns
     the normal form of a plan of changes."""
-    return lambda tokens, slots: key(plan_of(tokens, slots))
+    return lambda tokens, slots: key(change_of(tokens, slots))
 
 
 def most_plausible(found: Sequence[ScoredPlan[Brief]]) -> ScoredPlan[Brief]:

@@ -10,7 +10,10 @@ from typing import get_args
 
 from roadgpt.brief.amount import figure
 from roadgpt.brief.languages import pattern_of
+from roadgpt.brief.plan import SCENE
 from roadgpt.brief.readers.model.slots import LARGEST_SEEN, SLOTS, NumberSlot
+from roadgpt.brief.scene import DOINGS
+from roadgpt.brief.scene import NUMBERS as NUMBERS_OF_SCENES
 from roadgpt.brief.words import Kind, Slope
 from roadgpt.reading import read_text
 
@@ -125,7 +128,7 @@ UNIT_OF = {
     "len=": "metres", "taper=": "metres", "climb=": "metres",
     "turning=": "degrees", "pct=": "percent", "steepest=": "percent", **MEASURED,
     **dict.fromkeys(("v=", "dv=", "to=", "lat=", "speed="), "kmh"),
-    **dict.fromkeys(("gap=", "lead=", "s=", "away=", "shift=", "t=", "dist=", "fog=", "outer="), "metres"),
+    **dict.fromkeys(("gap=", "lead=", "s=", "away=", "shift=", "t=", "dist=", "fog=", "outer=", "turn_len="), "metres"),
     **dict.fromkeys(("overlap=", "impact="), "percent"), **dict.fromkeys(("decel=", "accel="), "mps2"),
     **dict.fromkeys(("thw=", "time=", "ttc=", "for=", "mu=", "rain="), ""),
 }  # fmt: skip
@@ -135,12 +138,55 @@ SCALES = {"lat=": 1 / 3.6}
 """What a value of a text is multiplied by in plans: speeds sideways are in m/s."""
 
 
-def plan_of(tokens: Iterable[str], slots: Sequence[NumberSlot]) -> str:
-    """Returns the plan that the tokens represent, with the values of the slots filled in."""
+KEY_OF_CHANGE = re.compile(
+    rf"\b({'|'.join(sorted({number.key for number in NUMBERS_OF_SCENES.values()}))}) "
+    r"(?=[=+x-]|\.\.|-?\d|(?:slightly |much )?(?:more|less)\b)"
+)
+"""The name of a number of a scene in a plan of changes, "truck: v +5", where a description has "v=5"."""
+KEY_OF_TOKENS = re.compile(r"\b([a-z]+)= ?")
+NEW = re.compile(r"(?<![\w])add ")
+
+
+def usual_key(doing: str) -> str:
+    """Returns the key of the number that stands without one behind an action, such as "decel=" for "brake";
+    empty if there is none."""
+    first = next(iter(DOINGS[doing].numbers), "")
+    return f"{NUMBERS_OF_SCENES[first].key}=" if first else ""
+
+
+def with_keys(line: str) -> str:
+    """Returns a plan of changes in which the numbers of the scene have their keys as in tokens: "v= +5"."""
+    return _in_changes_of_scene(KEY_OF_CHANGE, r"\1= ", line)
+
+
+def change_of(tokens: Iterable[str], slots: Sequence[NumberSlot]) -> str:
+    """Returns the plan of changes that the tokens represent."""
+    return _in_changes_of_scene(KEY_OF_TOKENS, r"\1 ", plan_of(tokens, slots, is_change=True))
+
+
+def _in_changes_of_scene(found: re.Pattern[str], by: str, line: str) -> str:
+    """Replaces what is found in the changes of the scene, but not in what they add."""
+    road, mark, scene = line.partition(SCENE)
+    parts = list[str]()
+    for part in scene.split(";"):
+        new = NEW.search(part)
+        at = new.start() if new else len(part)
+        parts.append(found.sub(by, part[:at]) + part[at:])
+    return road + mark + ";".join(parts)
+
+
+def plan_of(tokens: Iterable[str], slots: Sequence[NumberSlot], is_change: bool = False) -> str:
+    """Returns the plan, or the plan of changes, that the tokens represent, with the values of the slots
+    filled in."""
     out: list[str] = []
     key = ""
     for word in with_values(tokens, slots):
-        key = word if word in UNIT_OF else key if word in ("..", "-") or word in SLOT_TOKENS else ""
+        if word in UNIT_OF:
+            key = word
+        elif is_change and word in DOINGS:
+            key = usual_key(word)
+        elif word not in ("..", "-", "=", "+") and word not in SLOT_TOKENS:
+            key = ""
         index = SLOT_TOKENS.index(word) if word in SLOT_TOKENS else SLOTS
         value = slots[index].value if index < len(slots) else 0.0
         percent = out[-1] if out and out[-1] in PERCENTS else ""
@@ -148,7 +194,8 @@ def plan_of(tokens: Iterable[str], slots: Sequence[NumberSlot]) -> str:
             share = value / 100
             out[-1:] = ["x", figure({"x+": 1 + share, "x-": 1 - share, "x%": share}[percent], 4)]
         elif word in SLOT_TOKENS:
-            out.append(figure(value * SCALES.get(key, 1), 1 if slots[index].unit else 2))
+            has_unit = index < len(slots) and bool(slots[index].unit)
+            out.append(figure(value * SCALES.get(key, 1) if has_unit else value, 1 if has_unit else 2))
         elif word in RAINS:
             out.append(RAINS[word])
         elif word in (";", "|", ")", ","):
