@@ -9,19 +9,21 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.grammar import END, PlanAutomaton
 from roadgpt.brief.readers.model.neural_network import WINDOW, WordPieces
-from roadgpt.brief.readers.model.scene_grammar import whole
+from roadgpt.brief.readers.model.scene_grammar import any_change, whole
 from roadgpt.brief.readers.model.scenes import asked_in, joined, with_named, without_scene
 from roadgpt.brief.readers.model.slots import NumberSlot, slotted
-from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, TOKENS, Compared
+from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, TOKENS, Compared, change_of
 from roadgpt.errors import RoadGPTError
 from roadgpt_training.field import parted
 from roadgpt_training.tokens import tokens_of
 
 DATA = Path(__file__).resolve().parents[2] / "training" / "data" / "field"
+OF_SCENES = sorted(DATA.parent.glob("changes/scenes*/*.jsonl"))
 TEXTS = sorted(path for name in ("train", "validation") for path in (DATA / name).glob("*.jsonl"))
 
 
@@ -47,6 +49,28 @@ def test_plans_of_texts_of_the_field_survive_being_cut_into_tokens() -> None:
             assert (found.comes_from, found.junctions) == (asked.comes_from, normal(asked).junctions), row
     assert len(pairs) > 300
     assert written >= 0.95 * len(pairs)
+
+
+def test_changes_of_scenes_survive_being_cut_into_tokens() -> None:
+    """Nearly all: a few labels have a number that the text tells in words."""
+    lines = [line for path in OF_SCENES for line in path.read_text(encoding="utf-8").splitlines()[::4]]
+    pairs = [row for row in map(json.loads, lines) if not row["plan"].startswith("!")]
+    written = 0
+    for row in pairs:
+        text = slotted(row["text"], is_change=True)
+        tokens = tokens_of(row["plan"], text.slots, is_change=True)
+        if tokens is None:
+            continue
+        writer = PlanAutomaton(text.slots, frozenset(word.text for word in text.words), whole=any_change)
+        for token in (*tokens, END):
+            if NUMBER_OF[token] not in writer.allowed():
+                break
+            writer.push(token)
+        else:
+            written += 1
+            assert read_change_plan(change_of(tokens, text.slots)).scene == read_change_plan(row["plan"]).scene
+    assert len(pairs) > 200
+    assert written >= 0.97 * len(pairs)
 
 
 @given(st.integers(0, 10_000), st.lists(st.sampled_from([0.3, 12.0, 40.0, 80.5, 100.0]), max_size=4))
@@ -85,9 +109,15 @@ def test_whatever_the_network_may_write_of_scenes_is_read_or_refused_in_one_sent
         ("50 g 3", "[unused1] g 3", [50.0]),
         ("1:10 uphill", "[unused1] percent uphill", [10.0]),
         ("friction 0.25", "friction [unused1]", [0.25]),
+        ("eastbound at 70 in a 55 zone", "eastbound at [unused1] kmh in a [unused2] kmh zone", [112.7, 88.5]),
+        ("V1 35 mph, V2 doing about 15", "v 1 [unused1] kmh , v 2 doing about [unused2] kmh", [56.3, 24.1]),
+        ("northbound, slowed to 20, 3 lanes", "northbound , slowed to [unused1] kmh , 3 lanes", [32.2]),
+        ("northbound at 70 behind a car doing 60 km/h", "northbound at [unused1] behind a car doing [unused2] kmh", [70.0, 60.0]),
+        ("northbound at 40 Main Street", "northbound at [unused1] main street", [40.0]),
+        ("the car drives at 70", "the car drives at [unused1]", [70.0]),
     ],
 )
-def test_years_ages_times_and_routes_are_no_measures(text: str, read: str, values: list[float]) -> None:
+def test_numbers_of_texts_become_slots_words_and_speeds(text: str, read: str, values: list[float]) -> None:
     found = slotted(text)
     assert (found.text, [slot.value for slot in found.slots]) == (read, values)
 

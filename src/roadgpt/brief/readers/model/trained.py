@@ -42,7 +42,7 @@ ANY_WORLD = (None, 0.0)
 """No limit of the map and of radii: those of a World are checked in brief.read."""
 REFUSING = tuple((word,) for word in REFUSALS)
 SHORT = 12
-"""The largest number of words of a text that the network for routes reads only if a word mentions one."""
+"""The largest number of words of a text whose single road is read by the network for roads alone."""
 LONG = 40
 """The largest number of words of a text in which all words are looked at that its plan does not depend on."""
 Asked = TypeVar("Asked")
@@ -262,12 +262,14 @@ def chosen(
 ) -> tuple[Trained, tuple[ScoredPlan[Brief], ...]]:
     """Returns the network chosen for a description, and the plans that it wrote, the likeliest first.
 
-    ``routes`` reads the description if a word may mention a junction, ramp, lane or map. A network plan is a
-    route, a map, or a plan with words that ``roads`` does not know. ``routes`` is chosen in these cases:
+    ``routes`` reads the description if it can write scenes, or if a word may mention a junction, ramp, lane
+    or map. A network plan is a route, a map, or a plan with words that ``roads`` does not know. ``routes`` is
+    chosen in these cases:
 
     - It writes a network plan with a confidence of at least ``GUESS``. The confidence of ``roads`` is then
       ignored, because ``roads`` may be sure that "crossroads, sharp left" is a bend.
-    - It writes a network plan, and ``roads`` has no plan of higher confidence.
+    - It writes a network plan, or any plan of a text of more than ``SHORT`` words if it can write scenes, and
+      ``roads`` has no plan of higher confidence.
     - It refuses the description, and the confidence of ``roads`` in a plan is less than ``SURE``.
     - ``roads`` names a junction or the like beside the road, or as the cause of a refusal. ``routes`` then
       reads the description whatever its words are.
@@ -276,10 +278,11 @@ def chosen(
 
     ``refuse_from`` is the smallest probability of a refusal at which a refusal is allowed as a plan; None
     takes the value that was fitted to each network."""
-    is_story = routes is not None and routes.network.has_scenes and len(text.words) > SHORT
-    read = routes.plans(text, refuse_from) if routes and (is_story or may_tell_a_route(words)) else ()
+    has_scenes = routes is not None and routes.network.has_scenes
+    read = routes.plans(text, refuse_from) if routes and (has_scenes or may_tell_a_route(words)) else ()
     is_route = bool(read) and _is_route(read[0], roads)
-    sure = _confidence(routes, read, text) if routes and is_route else 0.0
+    may_win = is_route or (has_scenes and len(text.words) > SHORT)
+    sure = _confidence(routes, read, text) if routes and may_win else 0.0
     if routes and is_route and sure >= GUESS:
         return routes, read
     found = roads.plans(text, refuse_from)
@@ -290,7 +293,7 @@ def chosen(
     against = _confidence(roads, found, text)
     if read[0].refusal:
         return (routes, read) if against < SURE else (roads, found)
-    return (routes, read) if is_route and sure >= against else (roads, found)
+    return (routes, read) if may_win and sure >= against else (roads, found)
 
 
 def _is_route(draft: ScoredPlan[Brief], roads: Trained) -> bool:
