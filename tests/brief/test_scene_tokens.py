@@ -68,7 +68,9 @@ def test_changes_of_scenes_survive_being_cut_into_tokens() -> None:
             writer.push(token)
         else:
             written += 1
-            assert read_change_plan(change_of(tokens, text.slots)).scene == read_change_plan(row["plan"]).scene
+            assert (
+                read_change_plan(change_of(tokens, text.slots)).scene == read_change_plan(row["plan"]).scene
+            )
     assert len(pairs) > 200
     assert written >= 0.97 * len(pairs)
 
@@ -112,7 +114,11 @@ def test_whatever_the_network_may_write_of_scenes_is_read_or_refused_in_one_sent
         ("eastbound at 70 in a 55 zone", "eastbound at [unused1] kmh in a [unused2] kmh zone", [112.7, 88.5]),
         ("V1 35 mph, V2 doing about 15", "v 1 [unused1] kmh , v 2 doing about [unused2] kmh", [56.3, 24.1]),
         ("northbound, slowed to 20, 3 lanes", "northbound , slowed to [unused1] kmh , 3 lanes", [32.2]),
-        ("northbound at 70 behind a car doing 60 km/h", "northbound at [unused1] behind a car doing [unused2] kmh", [70.0, 60.0]),
+        (
+            "northbound at 70 behind a car doing 60 km/h",
+            "northbound at [unused1] behind a car doing [unused2] kmh",
+            [70.0, 60.0],
+        ),
         ("northbound at 40 Main Street", "northbound at [unused1] main street", [40.0]),
         ("the car drives at 70", "the car drives at [unused1]", [70.0]),
     ],

@@ -3,7 +3,8 @@
     python benchmarks/bench_reading.py [ROADS]
 
 Prints the scores on the hand-written splits and on the exam (inputs that must be refused, and honest ones
-that sound dangerous), how many descriptions of routes with junctions are read exactly, the share of valid
+that sound dangerous), how many descriptions of routes with junctions and texts of the field are read exactly,
+by manner and language, how sure the reader is of the latter, the share of valid
 roads for the three prompts of RoadGPT's evaluation with Clopper-Pearson intervals and a test of independence,
 and time and memory of the trained reader in a process of its own.
 """
@@ -24,6 +25,7 @@ from roadgpt.brief import check as check_brief
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model import ModelReader
+from roadgpt.brief.scene import Scene
 from roadgpt.design import draft
 from roadgpt.errors import BriefError, DesignError
 from roadgpt.road import Design, World, build
@@ -33,10 +35,16 @@ from roadgpt_training.labels import read_pairs
 from roadgpt_training.pair import Pair, normal_change
 
 HAND = Path(__file__).parents[1] / "data" / "descriptions"
-CHANGES = HAND.parent / "changes" / "validation"
+CHANGES, SCENE_CHANGES = (HAND.parent / "changes" / name for name in ("validation", "scenes_validation"))
+FIELD = HAND.parent / "field" / "validation"
 NETWORKS = HAND.parent / "networks"
 SPLITS = ("validation", "contrasts_validation", "free_validation", "test", "exam")
 READERS = ("model",)
+READER = ModelReader()
+PARTS = (
+    *("road", "actors", "scene", "all", "sure", "all, sure", "all, words not used"),
+    *("different, sure, no word named", "wrongly refused", "rightly refused", "built"),
+)
 PROMPTS = (
     "a road",
     "an uphill road with 3 turns",
@@ -73,7 +81,10 @@ print(f"imported, loaded and read once in {loaded:.2f} s; "
 def main(roads: int = 1000) -> None:
     """All tables, one after another."""
     _scores()
-    _changes()
+    for place in (CHANGES, SCENE_CHANGES):
+        _changes(place)
+    for group in ("manner", "lang"):
+        _field(group)
     for split in ("validation", "test"):
         _networks(split)
     _validity(roads)
@@ -98,9 +109,9 @@ def _scores() -> None:
             print(found.row(f"{name}, {split}"), f"{len(every) - len(pairs)} pairs left out")
 
 
-def _changes() -> None:
+def _changes(place: Path) -> None:
     """Change requests that are read as labelled: the same changes, or refused for the same kind of reason."""
-    pairs, _ = read_pairs(CHANGES.glob("*.jsonl"), is_change=True)
+    pairs, _ = read_pairs(place.glob("*.jsonl"), is_change=True)
     reader = ModelReader()
     right = 0
     for pair in pairs:
@@ -109,7 +120,7 @@ def _changes() -> None:
             right += got.split()[0] == pair.plan.split()[0]
         else:
             right += normal_change(got) == normal_change(pair.plan)
-    print(f"change requests of the validation split read as labelled: {right} of {len(pairs)}")
+    print(f"change requests of {place.name} read as labelled: {right} of {len(pairs)}")
 
 
 def _networks(split: str) -> None:
@@ -130,6 +141,47 @@ def _networks(split: str) -> None:
         its = counts[group]
         print(f"{group} | {its.total()} | " + " | ".join(str(its[verdict]) for verdict in VERDICTS))
     print(f"{np.median(took):.1f} ms of processor time (median), {np.quantile(took, 0.95):.1f} ms (95 %)")
+
+
+def _field(group: str) -> None:
+    """Texts of the field by manner or language: how many are read with the road, the actors, the scene and
+    all of the label, and of how many of these the reader is sure, or names words as not used.
+    """
+    counts: dict[str, Counter[str]] = {}
+    lines = [line for path in FIELD.glob("*.jsonl") for line in path.read_text(encoding="utf-8").splitlines()]
+    for row in map(json.loads, lines):
+        found = _parts_right(row["text"], row["plan"])
+        for name in (row[group], "all"):
+            counts.setdefault(name, Counter(dict.fromkeys(PARTS, 0))).update(["texts", *found])
+    print(f"field, {group} | texts | " + " | ".join(PARTS))
+    for name in sorted(counts, key=lambda name: (name == "all", name)):
+        print(f"{name} | " + " | ".join(str(counts[name][part]) for part in ("texts", *PARTS)))
+
+
+def _parts_right(text: str, label: str) -> list[str]:
+    """Which parts of a text of the field are read as its label has them."""
+    try:
+        brief = READER.read(text)
+    except BriefError:
+        return ["rightly refused"] if label.startswith("!") else ["wrongly refused"]
+    if label.startswith("!"):
+        return ["built"]
+    free = {"beside": (), "words": "", "unused": (), "confidence": 1.0, "other": ""}
+    got, wanted = (normal(each).model_copy(update=free) for each in (brief, read_plan(label)))
+    bare = {"scene": Scene()}
+    found = ["road"] if got.model_copy(update=bare) == wanted.model_copy(update=bare) else []
+    found += ["actors"] if _roles(got.scene) == _roles(wanted.scene) else []
+    found += ["scene"] if got.scene == wanted.scene else []
+    is_right, is_sure = got == wanted, brief.confidence >= SURE
+    found += ["sure"] if is_sure else []
+    found += ["all"] if is_right else []
+    found += ["all, sure"] if is_right and is_sure else []
+    found += ["all, words not used"] if is_right and brief.unused else []
+    return [*found, "different, sure, no word named"] if is_sure and not (is_right or brief.unused) else found
+
+
+def _roles(scene: Scene) -> list[object]:
+    return [(r.kind, r.where, r.side, r.count, [action.what for action in r.actions]) for r in scene.actors]
 
 
 def _as_labelled(brief: Brief) -> Brief:

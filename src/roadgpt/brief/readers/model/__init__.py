@@ -125,7 +125,11 @@ class ModelReader:
         if self.routes and self.routes.network.has_scenes:
             of_scene = scored_plans(self.routes.network, text, self.routes.refuse_from, changes_in(key))
             if of_scene and SCENE in of_scene[0].tokens:
-                trained, weights, found = self.routes, self._settings.get("scene_changes", {"bias": 0.0}), of_scene
+                trained, weights, found = (
+                    self.routes,
+                    self._settings.get("scene_changes", {"bias": 0.0}),
+                    of_scene,
+                )
         if not found:
             raise BriefError("this could not be read as changes; use shorter sentences")
         draft, *rest = found

@@ -55,7 +55,10 @@ MOST_ACTORS, MOST_PATCHES, MOST_LANDS, MOST_ACTIONS = 6, 2, 5, 4
 MOST_SAME = tuple(map(str, range(1, 10)))
 SIDES = ("left", "right")
 ONE_SIDE = one_of(*SIDES, "opposite")
-WHICH = (*(any_of(one_of(*MOST_SAME), sequel(one_of("-"), one_of(*MOST_SAME))) for _ in range(3)), one_of("all"))
+WHICH = (
+    *(any_of(one_of(*MOST_SAME), sequel(one_of("-"), one_of(*MOST_SAME))) for _ in range(3)),
+    one_of("all"),
+)
 """Which of several alike things are meant."""
 
 
