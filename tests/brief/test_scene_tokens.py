@@ -15,7 +15,7 @@ from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.grammar import END, PlanAutomaton
 from roadgpt.brief.readers.model.neural_network import WINDOW, WordPieces
 from roadgpt.brief.readers.model.scene_grammar import any_change, whole
-from roadgpt.brief.readers.model.scenes import asked_in, joined, with_named, without_scene
+from roadgpt.brief.readers.model.scenes import asked_in, joined, with_named, with_origin, without_scene
 from roadgpt.brief.readers.model.slots import NumberSlot, slotted
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, TOKENS, Compared, change_of
 from roadgpt.errors import RoadGPTError
@@ -156,3 +156,19 @@ def test_road_users_that_the_scene_lacks_are_named() -> None:
     text = slotted("a truck ahead at 60 km/h, a bus stop, a cyclist, after 300 m")
     assert [*without_scene(text, read_plan("&& truck ahead v=60"), ())] == ["cyclist"]
     assert [*without_scene(text, read_plan("turn"), ["cyclist"])] == ["truck"]
+
+
+@pytest.mark.parametrize(
+    ("words", "came", "comes"),
+    [
+        ("V1 southbound", "south", "north"),
+        ("V1 southbound, V2 northbound", "south", "south"),
+        ("heading east - north of town", "east", "west"),
+        ("from the south", "south", "south"),
+        ("a NB car", "north", "south"),
+        ("northeast - bound", "northeast", "southwest"),
+    ],
+)
+def test_who_goes_south_comes_from_the_north(words: str, came: str, comes: str) -> None:
+    found = with_origin(read_plan(f"| from={came}"), slotted(words))
+    assert found.comes_from == comes

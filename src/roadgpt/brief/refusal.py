@@ -8,7 +8,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.words import SURFACES
 from roadgpt.errors import BriefError
 
-MOST_CHARACTERS = 2000
+MOST_CHARACTERS = 6000
 """The largest number of characters in a description."""
 EXAMPLE = "say for example 'an uphill road with 3 turns'"
 """The end of the message for a description that is empty or says nothing about a road."""

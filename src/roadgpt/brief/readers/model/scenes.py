@@ -2,7 +2,7 @@
 and where one comes from. In the tokens of a plan it follows the road; here both are put together."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, get_args
 
 from roadgpt.brief.feasible import is_possible
 from roadgpt.brief.languages import TABLE
@@ -12,6 +12,7 @@ from roadgpt.brief.plan import SCENE, read_plan
 from roadgpt.brief.readers.model.slots import NumberSlot, SlottedText
 from roadgpt.brief.readers.model.vocabulary import WISHES, plan_of
 from roadgpt.brief.scene import Land, Scene
+from roadgpt.brief.words import Compass
 
 NAMES: Mapping[str, frozenset[str]] = {
     name: frozenset(words.split()) for name, words in TABLE["others"].items()
@@ -31,6 +32,10 @@ NAMED: Mapping[str, Scene] = {
 }
 """What some of the names that a network gives beside a road are as a scene. How dense traffic is, they do not
 tell."""
+COMPASS: tuple[Compass, ...] = get_args(Compass)
+BOUND_BRIEFLY = {f"{way[0]}b": way for way in COMPASS[::2]}
+"""What "NB" and the like say of the direction in which somebody goes."""
+GOING = ("heading", "going", "driving", "travelling", "traveling", "proceeding", "moving")
 AS_SCENE: Mapping[str, tuple[str, ...]] = {
     "traffic": ("flow", "oncoming"),
     "pedestrian": ("adult", "child"),
@@ -120,6 +125,29 @@ def with_named(brief: Brief) -> Brief:
         else:
             fields |= new
     return brief.model_copy(update={"scene": Scene(**fields), "beside": tuple(beside)})
+
+
+def with_origin(brief: Brief, text: SlottedText) -> Brief:
+    """Returns a Brief that comes from the south where its words say "northbound" of everybody, and from the
+    north if it has that the wrong way round."""
+    came = brief.comes_from
+    if came is None:
+        return brief
+    opposite = COMPASS[(COMPASS.index(came) + len(COMPASS) // 2) % len(COMPASS)]
+    goals = {*_goals([word.text for word in text.words])}
+    is_turned = came in goals and opposite not in goals
+    return brief.model_copy(update={"comes_from": opposite}) if is_turned else brief
+
+
+def _goals(words: Sequence[str]) -> Iterator[str]:
+    """Yields the directions in which somebody goes, such as "north" for "northbound" and "heading north"."""
+    for at, word in enumerate(words):
+        if word in BOUND_BRIEFLY:
+            yield BOUND_BRIEFLY[word]
+        for way in COMPASS:
+            is_bound = word == f"{way}bound" or (word == way and "bound" in words[at + 1 : at + 3])
+            if is_bound or (at and words[at - 1] in GOING and word in (way, f"{way}ward", f"{way}wards")):
+                yield way
 
 
 def without_scene(text: SlottedText, told: Brief, beside: Iterable[str]) -> Iterator[str]:
