@@ -32,11 +32,12 @@ from roadgpt.brief.readers.model.vocabulary import (
     WAYS,
     Compared,
     exact_factor,
+    in_changes_of_scene,
     usual_key,
     value_of,
-    with_keys,
 )
 from roadgpt.brief.scene import DOINGS, WEATHER
+from roadgpt.brief.scene import NUMBERS as OF_SCENES
 
 PIECE = re.compile(
     r"//|\|\||&&|![a-z]+|(?:left|right)(?:\+(?:right|straight))+|[a-z_]+\(|[a-z_]+=|x(?=-?[\d.])|half[12]|\.\.|-?\d+(?:\.\d+)?|[a-z_]+|[;|):,=+]|-(?=\d)"
@@ -50,6 +51,11 @@ UNSAID = {
 LISTED = re.compile(r",(?=\s*-?\d)")
 """A comma between numbers of a list; it has no token, so the numbers directly follow each other."""
 NUMERIC = re.compile(r"-?\d+(?:\.\d+)?")
+KEY_OF_CHANGE = re.compile(
+    rf"\b({'|'.join(sorted({number.key for number in OF_SCENES.values()}))}) "
+    r"(?=[=+x-]|\.\.|-?\d|(?:slightly |much )?(?:more|less)\b)"
+)
+"""The name of a number of a scene in a plan of changes, "truck: v +5", where a description has "v=5"."""
 CLOSE = 0.0051
 """A factor is taken for a number in the text, or for a usual factor, if it differs by less than this."""
 
@@ -65,8 +71,8 @@ def tokens_of(
     taken: dict[int, str] = {}
     known = compared.plain if compared else frozenset()
     line = WAYS.sub(lambda ways: ways[0].replace("+", " "), _with_halfway(plan))
-    if is_change:
-        line = with_keys(line)
+    if is_change:  # numbers of the scene get the keys that they have in tokens: "v= +5"
+        line = in_changes_of_scene(KEY_OF_CHANGE, r"\1= ", line)
     for token, said in UNSAID.items():
         line = line.replace(said, token)
     for piece in PIECE.findall(LISTED.sub(" ", line)):

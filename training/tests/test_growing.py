@@ -18,7 +18,7 @@ def test_more_layers_and_tokens_change_no_score_of_an_old_token() -> None:
     weights = small.state_dict()
     large = ReaderNetwork(NetworkSizes(**{**_fields(SMALL), "tokens": 12, "decoder_layers": 6})).eval()
     large.load_state_dict(grown(weights, 12, 6))
-    pieces, tokens = torch.randint(1, 40, (3, 7)), torch.randint(1, 9, (3, 5))
+    pieces, tokens = torch.randint(1, 40, (3, 1, 7)), torch.randint(1, 9, (3, 5))
     with torch.no_grad():
         old, new = small(pieces, tokens), large(pieces, tokens)
     assert torch.allclose(old, new[..., :9], atol=1e-5)
@@ -44,7 +44,7 @@ def test_a_deeper_encoder_hardly_changes_the_scores_at_first() -> None:
     weights = small.state_dict()
     large = ReaderNetwork(NetworkSizes(**{**_fields(SMALL), "layers": 6})).eval()
     large.load_state_dict(deepened(weights, 6))
-    pieces, tokens = torch.randint(1, 40, (8, 7)), torch.randint(1, 9, (8, 5))
+    pieces, tokens = torch.randint(1, 40, (8, 1, 7)), torch.randint(1, 9, (8, 5))
     with torch.no_grad():
         old, new = small(pieces, tokens), large(pieces, tokens)
     assert layers_of(large.state_dict(), ENCODER) == 6

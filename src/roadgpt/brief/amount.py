@@ -121,5 +121,5 @@ def at_most(number: float) -> Amount:
 
 
 def between(low: float, high: float) -> Amount:
-    """Returns the Amount that allows every number from ``low`` to ``high``, both included."""
-    return Amount(lo=low, hi=high)
+    """Returns the Amount of every number from ``low`` to ``high``, both included; ``high`` may be inf."""
+    return Amount(lo=low, hi=high if high < inf else None)

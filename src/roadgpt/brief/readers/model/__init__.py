@@ -26,7 +26,7 @@ from roadgpt.brief.readers.model.before import (
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.number_words import COUNTED, plain
 from roadgpt.brief.readers.model.ring_sizes import with_diameters
-from roadgpt.brief.readers.model.scenes import asked_in, with_named, with_origin
+from roadgpt.brief.readers.model.scenes import asked_in, may_be_of_a_scene, with_named, with_origin
 from roadgpt.brief.readers.model.slots import SlottedText, Word, slot_name, slotted
 from roadgpt.brief.readers.model.trained import (
     ANY_WORLD,
@@ -122,14 +122,12 @@ class ModelReader:
         text = slotted(words, is_change=True)
         trained, weights = self.roads, self._settings["changes"]
         found = scored_plans(trained.network, text, trained.refuse_from, changes_in(key))
-        if self.routes and self.routes.network.has_scenes:
-            of_scene = scored_plans(self.routes.network, text, self.routes.refuse_from, changes_in(key))
+        routes, refusal = self.routes, found[0].refusal if found else ""
+        if routes and routes.network.has_scenes and may_be_of_a_scene(text, refusal):
+            of_scene = scored_plans(routes.network, text, routes.refuse_from, changes_in(key))
             if of_scene and SCENE in of_scene[0].tokens:
-                trained, weights, found = (
-                    self.routes,
-                    self._settings.get("scene_changes", {"bias": 0.0}),
-                    of_scene,
-                )
+                trained, found = routes, of_scene
+                weights = self._settings.get("scene_changes", {"bias": 0.0})
         if not found:
             raise BriefError("this could not be read as changes; use shorter sentences")
         draft, *rest = found

@@ -252,7 +252,7 @@ def _of_doing(what: What, numbers: Numbers) -> Symbol:
 
 
 def _value(key: str, numbers: Numbers) -> Symbol:
-    """Returns the symbol for a change of a number: to a figure or a bound, by one or a factor, more or less."""
+    """Returns the symbol for a change of a number: to a figure, by a figure or a factor, more or less."""
     found = numbers.of(key)
     name = key.removesuffix("=")
     is_signed = any(number.key == name and number.least < 0 for number in NUMBERS.values())

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, get_args
 
 from roadgpt.brief.feasible import is_possible
-from roadgpt.brief.languages import TABLE
+from roadgpt.brief.languages import TABLE, word_set
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import SCENE, read_plan
@@ -19,6 +19,8 @@ NAMES: Mapping[str, frozenset[str]] = {
 }
 """The words for other road users, weather and light that a scene should have if they are said, by what they
 are."""
+OF_SCENES = word_set("of_scenes").union(*NAMES.values())
+"""The words by which a text may be about a scene."""
 BEHIND = frozenset(["stop", "stops", "lane", "lanes", "bay", "bays", "shelter", "crossing"])
 """Words before which "bus", "bicycle" or "pedestrian" names a thing beside the road."""
 NAMED: Mapping[str, Scene] = {
@@ -148,6 +150,13 @@ def _goals(words: Sequence[str]) -> Iterator[str]:
             is_bound = word == f"{way}bound" or (word == way and "bound" in words[at + 1 : at + 3])
             if is_bound or (at and words[at - 1] in GOING and word in (way, f"{way}ward", f"{way}wards")):
                 yield way
+
+
+def may_be_of_a_scene(text: SlottedText, refusal: str = "") -> bool:
+    """Returns whether a text may be about a scene: by one of its words, or because it is refused as one of a
+    road for something that a scene has."""
+    is_named = any(word.text in OF_SCENES for word in text.words)
+    return is_named or not AS_SCENE.keys().isdisjoint(refusal.split())
 
 
 def without_scene(text: SlottedText, told: Brief, beside: Iterable[str]) -> Iterator[str]:

@@ -158,7 +158,7 @@ def take_unit_of_all(numbers: list[Number], tokens: list[str]) -> None:
 
 
 def take_miles_per_hour(numbers: list[Number], tokens: list[str], said: Sequence[str]) -> None:
-    """Treats numbers without a unit that are told as speeds, as in "doing 70 in a 55 zone", as miles per hour,
+    """Treats numbers without a unit that are told as speeds, as in "70 in a 55 zone", as miles per hour,
     if the description counts in miles, feet or yards or has words of those who do, and has no metric unit."""
     speeds = {number.factor for number in numbers if number.unit == "kmh"}
     lengths = {number.factor for number in numbers if number.unit == "metres"}

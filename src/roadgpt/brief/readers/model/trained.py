@@ -16,9 +16,9 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.before import TOLD_ON_ROUTES, may_tell_a_route
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.ring_sizes import LEAST, diameters
-from roadgpt.brief.readers.model.scenes import asked_in, told_in, without_scene
+from roadgpt.brief.readers.model.scenes import asked_in, may_be_of_a_scene, told_in, without_scene
 from roadgpt.brief.readers.model.slots import NumberSlot, SlottedText, Word
-from roadgpt.brief.readers.model.vocabulary import REFUSALS, ROUNDABOUT, SLOT_TOKENS, change_of
+from roadgpt.brief.readers.model.vocabulary import REFUSALS, ROUNDABOUT, SLOT_TOKENS, WISHES, change_of
 from roadgpt.brief.words import SURE
 from roadgpt.errors import RoadGPTError
 
@@ -42,7 +42,8 @@ ANY_WORLD = (None, 0.0)
 """No limit of the map and of radii: those of a World are checked in brief.read."""
 REFUSING = tuple((word,) for word in REFUSALS)
 SHORT = 12
-"""The largest number of words of a text whose single road is read by the network for roads alone."""
+"""The largest number of words of a text that the network for routes reads only if a word may be of a route or
+a scene."""
 LONG = 40
 """The largest number of words of a text in which all words are looked at that its plan does not depend on."""
 Asked = TypeVar("Asked")
@@ -203,16 +204,19 @@ class Trained:
         """Returns the words that a plan does not depend on, and the numbers that it lacks: spelled as in the
         text, each once, in the order of the text. Words for other road users, weather and light always count
         as unused if the plan has nothing of the kind; other words are not looked at where the plan tells more
-        than a road, or the text is long and the network can write scenes."""
+        than a road, or the text is long and the network can write scenes. Longer texts of testers are full of
+        numbers that are no measures, so those without a unit are not named there."""
         told = Brief() if text.is_change else told_in(tokens, text.slots)
         is_story = told != Brief() or (self.network.has_scenes and len(text.words) > LONG)
         idle = frozenset[int]() if is_story else self._idle(text, tokens)
         named = set[str]() if text.is_change else {*without_scene(text, told, tokens)}
         out: list[str] = []
         missing, slot = lost(tokens, text), 0
+        is_long = self.network.has_scenes and len(text.words) > SHORT
         for place, word in enumerate(text.words):
             if word.text.startswith("[unused") and word.written:
-                if slot in missing or slot >= len(text.slots):
+                is_measure = slot >= len(text.slots) or not is_long or bool(text.slots[slot].unit)
+                if is_measure and (slot in missing or slot >= len(text.slots)):
                     out.append(word.written)
                 slot += 1
             elif word.written in named:
@@ -262,14 +266,13 @@ def chosen(
 ) -> tuple[Trained, tuple[ScoredPlan[Brief], ...]]:
     """Returns the network chosen for a description, and the plans that it wrote, the likeliest first.
 
-    ``routes`` reads the description if it can write scenes, or if a word may mention a junction, ramp, lane
-    or map. A network plan is a route, a map, or a plan with words that ``roads`` does not know. ``routes`` is
-    chosen in these cases:
+    ``routes`` reads the description if a word may mention a junction, ramp, lane or map; one that can write
+    scenes also if a word may be of a scene, or the text has more than ``SHORT`` words. A network plan is a
+    route, a map, or a plan with words that ``roads`` does not know. ``routes`` is chosen in these cases:
 
     - It writes a network plan with a confidence of at least ``GUESS``. The confidence of ``roads`` is then
       ignored, because ``roads`` may be sure that "crossroads, sharp left" is a bend.
-    - It writes a network plan, or any plan of a text of more than ``SHORT`` words if it can write scenes, and
-      ``roads`` has no plan of higher confidence.
+    - It writes a network plan, and ``roads`` has no plan of higher confidence.
     - It refuses the description, and the confidence of ``roads`` in a plan is less than ``SURE``.
     - ``roads`` names a junction or the like beside the road, or as the cause of a refusal. ``routes`` then
       reads the description whatever its words are.
@@ -278,11 +281,11 @@ def chosen(
 
     ``refuse_from`` is the smallest probability of a refusal at which a refusal is allowed as a plan; None
     takes the value that was fitted to each network."""
-    has_scenes = routes is not None and routes.network.has_scenes
-    read = routes.plans(text, refuse_from) if routes and (has_scenes or may_tell_a_route(words)) else ()
+    is_story = len(text.words) > SHORT or may_be_of_a_scene(text)
+    is_asked = may_tell_a_route(words) or (routes is not None and routes.network.has_scenes and is_story)
+    read = routes.plans(text, refuse_from) if routes and is_asked else ()
     is_route = bool(read) and _is_route(read[0], roads)
-    may_win = is_route or (has_scenes and len(text.words) > SHORT)
-    sure = _confidence(routes, read, text) if routes and may_win else 0.0
+    sure = _confidence(routes, read, text) if routes and is_route else 0.0
     if routes and is_route and sure >= GUESS:
         return routes, read
     found = roads.plans(text, refuse_from)
@@ -293,13 +296,13 @@ def chosen(
     against = _confidence(roads, found, text)
     if read[0].refusal:
         return (routes, read) if against < SURE else (roads, found)
-    return (routes, read) if may_win and sure >= against else (roads, found)
+    return (routes, read) if is_route and sure >= against else (roads, found)
 
 
 def _is_route(draft: ScoredPlan[Brief], roads: Trained) -> bool:
     """Returns whether a plan is one of a route or a map, or has words that ``roads`` does not know."""
     # brief.read takes from the words whether a single road is a motorway
-    tokens = [each for each in draft.tokens if each != "motorway"]
+    tokens = [each for each in draft.tokens if each not in ("motorway", WISHES)]
     asks = draft.asks
     is_network = asks is not None and (bool(asks.junctions) or asks.map is not None)
     return is_network or not roads.network.knows(tokens)

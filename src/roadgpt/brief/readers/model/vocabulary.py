@@ -128,7 +128,8 @@ UNIT_OF = {
     "len=": "metres", "taper=": "metres", "climb=": "metres",
     "turning=": "degrees", "pct=": "percent", "steepest=": "percent", **MEASURED,
     **dict.fromkeys(("v=", "dv=", "to=", "lat=", "speed="), "kmh"),
-    **dict.fromkeys(("gap=", "lead=", "s=", "away=", "shift=", "t=", "dist=", "fog=", "outer=", "turn_len="), "metres"),
+    **dict.fromkeys(("gap=", "lead=", "s=", "away=", "shift=", "t=", "dist=", "fog="), "metres"),
+    **dict.fromkeys(("outer=", "turn_len="), "metres"),
     **dict.fromkeys(("overlap=", "impact="), "percent"), **dict.fromkeys(("decel=", "accel="), "mps2"),
     **dict.fromkeys(("thw=", "time=", "ttc=", "for=", "mu=", "rain="), ""),
 }  # fmt: skip
@@ -138,33 +139,23 @@ SCALES = {"lat=": 1 / 3.6}
 """What a value of a text is multiplied by in plans: speeds sideways are in m/s."""
 
 
-KEY_OF_CHANGE = re.compile(
-    rf"\b({'|'.join(sorted({number.key for number in NUMBERS_OF_SCENES.values()}))}) "
-    r"(?=[=+x-]|\.\.|-?\d|(?:slightly |much )?(?:more|less)\b)"
-)
-"""The name of a number of a scene in a plan of changes, "truck: v +5", where a description has "v=5"."""
 KEY_OF_TOKENS = re.compile(r"\b([a-z]+)= ?")
-NEW = re.compile(r"(?<![\w])add ")
+NEW = re.compile(r"\badd ")
 
 
 def usual_key(doing: str) -> str:
     """Returns the key of the number that stands without one behind an action, such as "decel=" for "brake";
     empty if there is none."""
-    first = next(iter(DOINGS[doing].numbers), "")
+    first = next((name for what, its in DOINGS.items() if what == doing for name in its.numbers), "")
     return f"{NUMBERS_OF_SCENES[first].key}=" if first else ""
-
-
-def with_keys(line: str) -> str:
-    """Returns a plan of changes in which the numbers of the scene have their keys as in tokens: "v= +5"."""
-    return _in_changes_of_scene(KEY_OF_CHANGE, r"\1= ", line)
 
 
 def change_of(tokens: Iterable[str], slots: Sequence[NumberSlot]) -> str:
     """Returns the plan of changes that the tokens represent."""
-    return _in_changes_of_scene(KEY_OF_TOKENS, r"\1 ", plan_of(tokens, slots, is_change=True))
+    return in_changes_of_scene(KEY_OF_TOKENS, r"\1 ", plan_of(tokens, slots, is_change=True))
 
 
-def _in_changes_of_scene(found: re.Pattern[str], by: str, line: str) -> str:
+def in_changes_of_scene(found: re.Pattern[str], by: str, line: str) -> str:
     """Replaces what is found in the changes of the scene, but not in what they add."""
     road, mark, scene = line.partition(SCENE)
     parts = list[str]()
