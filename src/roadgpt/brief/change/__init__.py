@@ -15,6 +15,7 @@ from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.change.request import EditRequest
 from roadgpt.brief.change.spoken import spoken
 from roadgpt.brief.languages import pattern_of
+from roadgpt.brief.plan import SCENE
 from roadgpt.brief.readers.model import ModelReader
 from roadgpt.brief.readers.model.trained import DOUBT
 from roadgpt.brief.refusal import MOST_CHARACTERS, causes_of
@@ -65,7 +66,7 @@ def read_request(words: str, chat: ChatSettings | None = None) -> EditRequest:
     except BriefError as error:
         raise EditError(str(error)) from error
     surface, named = _surface_in(words)
-    unused = tuple(dict.fromkeys((*named, *reading.unused)))
+    unused = tuple(dict.fromkeys((*(() if SCENE in reading.plan else named), *reading.unused)))
     if surface:
         unused = tuple(word for word in reading.unused if word not in named)
         if reading.plan.split() == ["!impossible", surface]:

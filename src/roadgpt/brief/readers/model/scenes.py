@@ -137,8 +137,7 @@ def with_origin(brief: Brief, text: SlottedText) -> Brief:
         return brief
     opposite = COMPASS[(COMPASS.index(came) + len(COMPASS) // 2) % len(COMPASS)]
     goals = {*_goals([word.text for word in text.words])}
-    is_turned = came in goals and opposite not in goals
-    return brief.model_copy(update={"comes_from": opposite}) if is_turned else brief
+    return brief.model_copy(update={"comes_from": opposite if goals & {came, opposite} == {came} else came})
 
 
 def _goals(words: Sequence[str]) -> Iterator[str]:
