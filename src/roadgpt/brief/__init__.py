@@ -82,7 +82,7 @@ def read(
     The Brief is also checked for contradictions and against the limits given here (see ``check``).
 
     Args:
-        words: the description, up to 2,000 characters.
+        words: the description, up to 6,000 characters.
         reader: name of an installed reader, or 'model:FOLDER' for the model reader with weights in FOLDER.
         map_size: side of the square map that has to hold the road, in metres; None skips this check.
         min_radius: radius of the tightest turn allowed, in metres.
@@ -151,7 +151,7 @@ def alternatives(
     can satisfy are left out.
 
     Args:
-        words: the description, up to 2,000 characters.
+        words: the description, up to 6,000 characters.
         number: the largest number of readings to return.
         reader: name of an installed reader.
         map_size: side of the square map in metres; None skips the check whether the road fits.
