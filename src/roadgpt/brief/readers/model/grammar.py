@@ -425,6 +425,8 @@ DEEPEST = 2
 WAYS = ("up", "down", "flat")
 STEEPNESS = ("gently_up", "gently_down", "steeply_up", "steeply_down")
 SUPERLATIVES = ("longest", "shortest", "sharpest", "gentlest", "steepest", "flattest")
+LESS = one_of("more", "less")
+MORE_OR_LESS = (sequel(one_of("slightly", "much"), LESS), LESS)
 NEXT_TO = ("after(", "before(", "between(", "on(")
 """The positions of a feature that a change adds, relative to a place on the road."""
 MOVES = NEXT_TO[:3]
@@ -516,8 +518,7 @@ def _value(name: str, numbers: Numbers, like: Symbol) -> Symbol:
         sequel(one_of("=", BOUND), any_of(*figures, like)),
         *(sequel(one_of("+", MINUS), figure, other) for figure in figures),
         *(sequel(factor, other) for factor in factors(numbers)),
-        sequel(one_of("slightly", "much"), one_of("more", "less")),
-        one_of("more", "less"),
+        *MORE_OR_LESS,
         *(sequel(each, one_of(BOUND)) for each in (*figures, like)),
     )
 

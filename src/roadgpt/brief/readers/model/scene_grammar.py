@@ -13,6 +13,7 @@ from typing import cast, get_args
 from roadgpt.brief.amount import Frozen
 from roadgpt.brief.plan import SCENE, TESTED_CAR
 from roadgpt.brief.readers.model.grammar import (
+    MORE_OR_LESS,
     MOST_CHANGES,
     Numbers,
     Stack,
@@ -216,7 +217,7 @@ def _scene_change(numbers: Numbers) -> Symbol:
         (*get_args(Landform), "landscape"): ((*WHICH, one_of(*SIDES)), any_of(*_of_thing(Land, numbers))),
         ("slippery",): (WHICH, any_of(*_of_thing(Patch, numbers))),
         (TESTED_CAR,): ((), any_of(sequel(one_of("v="), _value("v=", numbers)), one_of("remove"))),
-        ("traffic", "oncoming"): ((), any_of(one_of("remove"), levels, *_more_or_less())),
+        ("traffic", "oncoming"): ((), any_of(one_of("remove"), levels, *MORE_OR_LESS)),
         ("fog",): ((), any_of(one_of("remove"), _value("fog=", numbers))),
         ("rain",): ((), any_of(one_of("remove"), _value("rain=", numbers))),
         ("parked",): ([one_of(*SIDES)], one_of("remove")),
@@ -260,9 +261,4 @@ def _value(key: str, numbers: Numbers) -> Symbol:
     exact = sequel(one_of("="), any_of(one_of(*found), *below))
     figures = [exact, sequel(one_of("..", "+", "-"), one_of(*found))] if found else []
     bounds = [sequel(one_of(*found), one_of(".."))] if found else []
-    return any_of(*figures, *bounds, *factors(numbers), *_more_or_less())
-
-
-def _more_or_less() -> tuple[Symbol, ...]:
-    less = one_of("more", "less")
-    return sequel(one_of("slightly", "much"), less), less
+    return any_of(*figures, *bounds, *factors(numbers), *MORE_OR_LESS)
