@@ -2,6 +2,7 @@
 
 import json
 import re
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
@@ -11,9 +12,10 @@ from hypothesis import strategies as st
 from random_plans import random_plan
 from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.brief.readers.model.grammar import END, PlanAutomaton, change_request
+from roadgpt.brief.readers.model.grammar import END, Numbers, PlanAutomaton, Symbol, change_request
+from roadgpt.brief.readers.model.scene_grammar import any_change
 from roadgpt.brief.readers.model.slots import slotted
-from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, plan_of
+from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, change_of, plan_of
 from roadgpt.brief.refusal import refused
 from roadgpt.errors import EditError
 from roadgpt_training.tokens import tokens_of
@@ -21,6 +23,7 @@ from tables import rows as table_rows
 
 DATA = Path(__file__).resolve().parents[2] / "training" / "data" / "changes"
 CHANGES = sorted(path for name in ("train", "validation") for path in (DATA / name).glob("*.jsonl"))
+OF_SCENES = sorted(DATA.glob("scenes*/*.jsonl"))
 
 
 def normal(line: str) -> str:
@@ -28,18 +31,23 @@ def normal(line: str) -> str:
     return line if line.startswith("!") else change_plan(read_change_plan(line))
 
 
-def test_plans_of_changes_survive_being_cut_into_tokens() -> None:
+@pytest.mark.parametrize(
+    ("paths", "every", "whole"), [(CHANGES, 40, change_request), (OF_SCENES, 4, any_change)]
+)
+def test_plans_of_changes_survive_being_cut_into_tokens(
+    paths: Sequence[Path], every: int, whole: Callable[[Numbers], Symbol]
+) -> None:
     """Nearly all: a few labels have a number that the text does not have, such as a sum."""
-    lines = [line for path in CHANGES for line in path.read_text(encoding="utf-8").splitlines()[::40]]
+    lines = [line for path in paths for line in path.read_text(encoding="utf-8").splitlines()[::every]]
     cut, written = 0, 0
     for row in map(json.loads, lines):
         text = slotted(row["text"], is_change=True)
-        tokens = tokens_of(normal(row["plan"]), text.slots)
+        tokens = tokens_of(normal(row["plan"]), text.slots, is_change=True)
         if tokens is None:
             continue
         cut += 1
-        assert normal(plan_of(tokens, text.slots)) == normal(row["plan"]), row
-        writer = PlanAutomaton(text.slots, frozenset(word.text for word in text.words), whole=change_request)
+        assert normal(change_of(tokens, text.slots)) == normal(row["plan"]), row
+        writer = PlanAutomaton(text.slots, frozenset(word.text for word in text.words), whole=whole)
         for token in (*tokens, END):
             if NUMBER_OF[token] not in writer.allowed():
                 break
