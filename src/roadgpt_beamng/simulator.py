@@ -130,7 +130,7 @@ class DriveLoop:
         self.samples.append(self._on_road(loaded.now, 0.0, 0.0))
         if self.guard is None:
             watchdog.due_in(loaded.settings.poll_timeout)
-            loaded.let_ai_drive(world.limits.speed_limit)
+            loaded.let_ai_drive(world.driven_speed)
             watchdog.pause()
         while True:
             now = self.samples[-1]

@@ -234,10 +234,15 @@ def test_who_crosses_on_a_crosswalk_walks_over_its_stripes():
     stripes = [each.points[:, :2] for each in strokes(road.network) if each.kind == "crosswalk"]
     middles = shapely.points([stripe.mean(axis=0) for stripe in stripes])
     (passage,) = road.passages
-    for near in (30.0, passage.start):
-        found = way(plan, "child crosswalk", near)
+    # who turns left meets people behind the junction, unless the scene names another place
+    for role, near, is_behind in (
+        ("child crosswalk", 30.0, True),
+        ("child crosswalk before junction 1", 30.0, False),
+        ("child crosswalk before junction 1", passage.start, True),
+    ):
+        found = way(plan, role, near)
         crossed = shapely.distance(middles, shapely.LineString(found.points[:, :2])) < 0.1
-        assert (found.meets[1] > passage.end) == (near > 30.0)
+        assert (found.meets[1] > passage.end) == is_behind
         assert crossed.sum() >= 6
 
 

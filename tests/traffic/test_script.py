@@ -137,11 +137,15 @@ def test_who_crosses_is_hit_where_the_scene_says(
     pytest.fail("nobody was hit")
 
 
-def test_a_cut_in_begins_at_its_gap_and_is_as_fast_sideways_as_it_says() -> None:
-    seen = show("ego v=60; car lane left dv=-20: cut_in lat=2 gap=30")
+@pytest.mark.parametrize("place", ["", " gap=52"])
+def test_a_cut_in_has_its_gap_and_is_as_fast_sideways_as_it_says(place: str) -> None:
+    seen = show(f"ego v=60; car lane left{place} dv=-20: cut_in lat=2 gap=30")
     aside, rate = seen.left(0), np.diff(seen.left(0)) / STEP
     moving = np.flatnonzero(np.abs(rate) > 1e-2)
-    assert seen.gap(0)[moving[0]] == pytest.approx(30.0, abs=0.6)  # within a sample of its begin
+    # with a place of its own it begins at that gap, else its box is over the line there
+    over = np.flatnonzero(aside - seen.actors[0].size.width / 2 <= 3.5 / 2)[0]
+    first = moving[0] if place else over
+    assert seen.gap(0)[first] == pytest.approx(30.0, abs=0.6)  # within a sample
     assert rate.min() == pytest.approx(-2.0, abs=0.02)
     assert rate.max() <= 1e-2
     assert (aside[0], aside[-1]) == (pytest.approx(3.5, abs=1e-3), pytest.approx(0.0, abs=1e-3))
@@ -163,8 +167,34 @@ def test_before_its_trigger_one_matches_a_tested_car_that_changes_its_speed() ->
     assert front == pytest.approx(planned, abs=0.5)
     assert head_on.states[n, 0, 4] == pytest.approx(50 / 3.6, abs=0.3)
     cut = show("ego v=50; car lane left v=40 : cut_in gap=15", speed=slower)
-    begins = int(np.flatnonzero(np.abs(np.diff(cut.left(0))) > 1e-3)[0])
-    assert cut.gap(0)[begins] == pytest.approx(15.0, abs=0.7)
+    over = int(np.flatnonzero(cut.left(0) - cut.actors[0].size.width / 2 <= 3.5 / 2)[0])
+    assert cut.gap(0)[over] == pytest.approx(15.0, abs=0.7)
+
+
+def test_somebody_who_crosses_at_a_gap_comes_over_the_line_there() -> None:
+    seen = show("ego v=80; animal crossing left v=20: cross gap=40")
+    over = int(np.flatnonzero(seen.left(0) - seen.actors[0].size.length / 2 <= 3.5 / 2)[0])
+    apart = seen.along(0)[over] - seen.car[over, 4] - BOX.length / 2 - seen.actors[0].size.width / 2
+    assert apart == pytest.approx(40.0, abs=80 / 3.6 * STEP)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        "cones x5 ahead; truck ahead v=0; adult x2.. ahead v=0",
+        "ego v=80; truck ahead v=80; lost_load ahead",
+        "ego v=70; car ahead: cut_out; van ahead gap=60 v=0",
+        "ego v=60; car ahead v=60; car ahead gap=70 v=20",
+        "ego v=60; truck lane left gap=5 v=60; bus lane left gap=40 v=30",
+    ],
+)
+def test_actors_in_one_lane_do_not_run_into_each_other(scene: str) -> None:
+    seen = show(scene, lasts=25.0)
+    for states in seen.states:
+        there = [n for n in range(len(seen.actors)) if not np.isnan(states[n, 0])]
+        boxes = [Polygon(corners(states[n], seen.actors[n].size)) for n in there]
+        for n, one in enumerate(boxes):
+            assert not any(one.intersects(other) for other in boxes[:n])
 
 
 SCENES = (

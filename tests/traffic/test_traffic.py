@@ -23,7 +23,7 @@ class Walker:
     def _come(self) -> None:
         self.actors.append(Actor(self.name, "adult", SIZES["adult"]))
 
-    def start(self, car: TestedCar) -> np.ndarray:
+    def start(self, car: TestedCar, bodies: np.ndarray) -> np.ndarray:
         return self._states(0.0)
 
     def move(self, time: float, car: TestedCar, bodies: np.ndarray) -> np.ndarray:
@@ -86,9 +86,10 @@ def test_every_mover_keeps_its_protocol_and_gives_the_same_again(name: str) -> N
     if scene is not None:
         world = world.model_copy(update={"scene": scene.model_copy(update={"flow": "medium"})})
     made = [plugins.find("movers", name)(Stage(ROADS["arcs"], world, 7, tracks)) for _ in range(2)]
+    nobody = np.empty((0, 7))
     for number in range(10):
         moved = [
-            mover.move((number - 1) * STEP, CAR, np.empty((0, 7))) if number else mover.start(CAR)
+            mover.move((number - 1) * STEP, CAR, nobody) if number else mover.start(CAR, nobody)
             for mover in made
         ]
         np.testing.assert_array_equal(*moved)

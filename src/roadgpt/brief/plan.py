@@ -264,6 +264,7 @@ ITSELF = _Language(
 A_LAND = _Language(_words(lie=Lie, side=Side), {"len": "length"}, of="landscape", is_counted=True)
 SLIPPERY = "slippery"
 A_PATCH = _Language({}, {NUMBERS[field].key: field for field in Patch.model_fields}, of="slippery place")
+CLOCK = "clock"
 CONDITIONS = _words(flow=Flow, light=Light, surface=Surface)
 MARK = re.compile(
     r"\b(?:(?:after|before|in) (?:turn|junction) (?:-1|[1-9]\d?)|(?:after|with) "
@@ -546,7 +547,8 @@ def scene_plan(scene: Scene) -> str:
     line += [f"{name} {amount_text(number)}" for name in WEATHER if (number := getattr(scene, name))]
     patches = [" ".join([SLIPPERY, *_written(patch, A_PATCH)]) for patch in scene.slippery]
     lands = [" ".join([each.kind, *_times(each.count), *_written(each, A_LAND)]) for each in scene.landscape]
-    return "; ".join(filter(None, [*line, scene.light, scene.surface, *patches, *lands]))
+    clock = f"{CLOCK} {scene.clock}" if scene.clock else ""
+    return "; ".join(filter(None, [*line, clock, scene.light, scene.surface, *patches, *lands]))
 
 
 def action_plan(action: Action) -> str:
@@ -590,11 +592,15 @@ def scene_fields(text: str) -> dict[str, object]:
             lands.append(_made(Land, _read_words({"kind": first}, words, A_LAND), part))
         elif first in WEATHER and len(words) < 2:
             _set(fields, first, read_amount(words[0]) if words else WEATHER[first])
+        elif first == CLOCK:
+            if not re.fullmatch(r"([01]\d|2[0-3]):[0-5]\d", time := part.partition(" ")[2].strip()):
+                raise BriefError(f"'{part[:40]}' is no time; write for example {CLOCK} 14:15")
+            _set(fields, CLOCK, time)
         elif first in CONDITIONS and not words:
             _set(fields, *CONDITIONS[first])
         else:
-            known = (*get_args(ActorKind), TESTED_CAR, "oncoming", "parked", SLIPPERY, *WEATHER, *CONDITIONS)
-            known += get_args(Landform)
+            known = (*get_args(ActorKind), TESTED_CAR, "oncoming", "parked", SLIPPERY, *WEATHER, CLOCK)
+            known += (*CONDITIONS, *get_args(Landform))
             raise BriefError(
                 f"a scene has no '{part[:40]}'; its parts, divided by ;, begin with one of {', '.join(known)}"
             )

@@ -6,7 +6,7 @@ another, each begun by a condition. A number may be a range, from which each dri
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Literal, NamedTuple, Self, get_args
 
-from pydantic import AfterValidator, model_validator
+from pydantic import AfterValidator, StringConstraints, model_validator
 
 from roadgpt.brief.amount import Amount, Frozen, exactly, span
 from roadgpt.brief.junctions import Side
@@ -18,6 +18,7 @@ ActorKind = Literal[
 ]  # fmt: skip
 Flow = Literal["light", "medium", "dense"]
 Light = Literal["night", "low_sun"]
+Clock = Annotated[str, StringConstraints(pattern=r"^([01][0-9]|2[0-3]):[0-5][0-9]$")]
 Person = Literal["robot"]
 Surface = Literal["wet", "snow", "ice"]
 Where = Literal[
@@ -49,6 +50,8 @@ ALONG = ("ahead", "behind", "lane", "far", "oncoming")
 LEAVES = ("cut_out", "change_lane")
 ON_ITS_WAY: tuple[What, ...] = ("merge", "turn_in", "turn_across", "cross", "run_light", "run_sign")
 """What somebody does on a way of its own, on which it is from the begin on."""
+MOST_MORE = 3
+"""How many more of a kind there are at most where a scene says "2 or more"."""
 LANES_AWAY = {"lane": 1, "far": 2}
 ACROSS = ("crossing", "crosswalk", "junction", "beside")
 ANYWHERE = get_args(Where)
@@ -348,7 +351,7 @@ class Scene(Frozen):
     """The others on the road, the conditions of a drive, and the landscape."""
 
     speed: Amount | None = None
-    """The speed of the tested car at its start in km/h."""
+    """The speed of the tested car at its start in km/h, which it keeps where nothing slows it down."""
     lane: int | None = None
     """The lane in which the tested car starts, of those of its direction: 1 is the one at the kerb, -1 the
     innermost one."""
@@ -367,6 +370,8 @@ class Scene(Frozen):
     """The visual range in metres."""
     rain: Amount | None = None
     """In mm/h."""
+    clock: Clock | None = None
+    """The local time as HH:MM. It says nothing about the light."""
     light: Light | None = None
     """Night, or a sun that is low ahead of the tested car at its start; None: day."""
     surface: Surface | None = None
@@ -496,6 +501,8 @@ def parts_said(scene: Scene) -> Iterator[str]:
     if scene.parked:
         yield f"cars parked on {'both sides' if len(scene.parked) > 1 else f'the {scene.parked[0]}'}"
     yield from _said(scene.model_copy(update={"speed": None}))
+    if scene.clock:
+        yield f"at {scene.clock}"
     if scene.light:
         yield LIGHTS[scene.light]
     if scene.surface:

@@ -1,18 +1,23 @@
 """Asks of the road of a Brief what a scene needs, or refuses it if the Brief excludes that.
 
 The tested car rolls at its speed for 4 s, then comes what happens, and then it can stop with 4 m/s2. Until
-that happens, it needs no more than 6 m/s2 sideways."""
+that happens, it needs no more than 6 m/s2 sideways. Where the words leave the bends open and there is room,
+they are those of a road that is designed for the greatest speed of the scene, so that nobody slows down for
+them."""
 
-from collections.abc import Iterator, Mapping
 from math import ceil, inf, pi
 
 from roadgpt.brief.amount import Amount, at_least
+from roadgpt.brief.design_speed import FASTEST, SLOWEST, limits_at
+from roadgpt.brief.feasible import is_possible
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
 from roadgpt.brief.model import Brief, Clause, span
 from roadgpt.brief.normal import STRAIGHT
 from roadgpt.brief.outline import outline
 from roadgpt.brief.ranges import Range
-from roadgpt.brief.scene import ACROSS, FLOWS, LEAVES, MOVING, USUAL_SPEEDS, Action, Role, Scene, Where
+from roadgpt.brief.scene import ACROSS, LEAVES, MOST_MORE, MOVING, USUAL_SPEEDS, Action, Role, Scene
+from roadgpt.brief.scene_check import check_scene
+from roadgpt.brief.words import MOTORWAY_RADIUS
 from roadgpt.errors import BriefError
 
 ROLLS = 4.0  # s at speed before anything happens
@@ -20,33 +25,29 @@ STOPS, ASIDE = 4.0, 6.0  # m/s2: with which the tested car can stop, and that it
 SPARE = 10.0  # m, for where the tested car starts, and for its length
 JUNCTION = 20.0  # m, across one
 LANE = 3.5  # m from lane to lane
+FOR_FLOW = 250.0  # m of road, so that traffic can be seen to flow
+SHORT, LONG = 7.0, 14.0  # m of a row for each who stands in it
+UNCOVERED = 70.0  # m, to who is uncovered behind somebody that leaves the lane
 VERGE = 8.0  # m, from the lanes to who comes from beside them; with a median, and what starting costs
+LANES_OF_MOTORWAY = 2
+WIDEST = 250.0  # m, the radius of bends that are asked for, at most, so that everybody calls them bends
 KMH = 3.6
-NEEDS: Mapping[Where, str] = {
-    "lane": "two lanes in its direction; write lanes=2",
-    "far": "three lanes in its direction; write lanes=3",
-    "oncoming": "an oncoming lane; write for example against=1",
-    "ramp": "a ramp; write for example merge ramp",
-    "junction": "a junction; write for example crossroads straight",
-    "roundabout": "a roundabout; write for example roundabout exit=2",
-    "crosswalk": "a crosswalk; write crosswalk behind a junction",
-}
-"""What somebody needs of the road where it is at first, and how to ask for it."""
 
 
-def fitted(brief: Brief, scene: Scene, limit: float) -> Brief:
+def fitted(brief: Brief, scene: Scene, limit: float, map_size: float | None = None) -> Brief:
     """Returns the Brief together with what a scene needs of its road and the Brief leaves open; ``limit`` is
-    the speed limit in m/s. Raises BriefError if the Brief excludes it. Where the scene does not say the speed
-    of the tested car, the Brief excludes no length and no bend: the car then begins as fast as it can."""
+    the speed limit in m/s, ``map_size`` the side in metres of a map that is given. Raises BriefError if the
+    Brief excludes it. Where the scene does not say the speed of the tested car, the Brief excludes no length
+    and no bend: the car then begins as fast as it can."""
     check_scene(scene, brief)
-    needs = (scene.actors, scene.speed, scene.lane, scene.slippery, scene.turn)
+    needs = (scene.actors, scene.has_flow, scene.speed, scene.lane, scene.slippery, scene.turn)
     if brief.map is not None or not any(needs):
         return brief
     speed = _most(scene.speed) / KMH if scene.speed else limit
     before, stop = _until_stop(scene, speed, brief), speed**2 / 2 / STOPS
     lanes = scene.lanes_needed(brief.left_hand)
     if not brief.stretches:
-        return _suited(brief, scene, lanes, speed, before, before + stop)
+        return _suited(brief, scene, lanes, speed, before, before + stop, map_size or brief.map_size)
     places = [place for place in brief.junctions if place.kind not in (*LANE_KINDS, *RAMPS)]
     at_junction = bool(scene.turn) or any(role.where in ("junction", "roundabout") for role in scene.actors)
     first, *others = brief.stretches
@@ -79,7 +80,16 @@ def _until_stop(scene: Scene, speed: float, brief: Brief) -> float:
     named = [role.station for role in roles] + [each.station for role in roles for each in role.actions]
     named += [each.station for each in scene.slippery]
     named += [role.gap for role in roles if role.where == "oncoming"]
-    return max(max(seconds) * speed, *map(_most, named), 0.0) + SPARE
+    least = FOR_FLOW if scene.has_flow else 0.0
+    return max(max(seconds) * speed, *map(_most, named), least) + sum(map(_row, roles)) + SPARE
+
+
+def _row(role: Role) -> float:
+    """Returns how many metres several alike in the tested car's lane are long, and what is uncovered."""
+    count = (role.count.hi or span(role.count).lo + MOST_MORE) if role.where == "ahead" else 1
+    one = LONG if role.kind in ("truck", "bus") else SHORT
+    leaves = bool(role.actions) and role.actions[0].what in LEAVES
+    return (count - 1) * one + leaves * UNCOVERED
 
 
 def _most(amount: Amount | None) -> float:
@@ -134,9 +144,24 @@ def _with_way(place: JunctionClause, scene: Scene) -> JunctionClause:
     )
 
 
-def _suited(road: Brief, scene: Scene, lanes: int, speed: float, straight: float, metres: float) -> Brief:
+def _suited(
+    road: Brief, scene: Scene, lanes: int, speed: float, straight: float, metres: float,
+    map_size: float | None = None,
+) -> Brief:  # fmt: skip
     """Asks of a road for lanes, a length in metres, and bends that are wide, or begin after a straight."""
+    easy = _with_radius(road, _easy_radius(road, scene, speed))
+    if easy != road:
+        easy = _long_enough(easy, scene, lanes, speed, straight, metres)
+        if is_possible(easy, map_size, 0.0):
+            return easy
+    return _long_enough(road, scene, lanes, speed, straight, metres)
+
+
+def _long_enough(
+    road: Brief, scene: Scene, lanes: int, speed: float, straight: float, metres: float
+) -> Brief:
     road = _drivable(road, straight, speed, scene.speed is not None)
+    lanes = max(lanes, LANES_OF_MOTORWAY) if road.motorway and road.lanes is None else lanes
     if lanes > 1 and span(road.lanes).lo < lanes <= span(road.lanes).hi:
         road = road.model_copy(update={"lanes": Amount(lo=lanes, hi=road.lanes and road.lanes.hi)})
     have, metres = _length(road), float(ceil(metres / 10) * 10)
@@ -161,6 +186,34 @@ def _length(road: Brief) -> Range:
     )
 
 
+def _easy_radius(road: Brief, scene: Scene, speed: float) -> float:
+    """Returns the least radius in metres of a road for the greatest speed of a scene; 0 if the words say what
+    road it is."""
+    turns = [each for each in road.clauses if each.kind not in STRAIGHT]
+    is_straight = (road.clauses and not turns) or span(road.turns).hi == 0
+    if road.surroundings is not None or road.speed is not None or is_straight:
+        return 0.0
+    kmh = max(KMH * speed, *(_most(role.speed) for role in scene.actors if role.where not in ACROSS), 0.0)
+    radius = float(ceil(limits_at(min(max(kmh, SLOWEST), FASTEST)).radius))
+    if road.motorway:
+        return max(radius, MOTORWAY_RADIUS)
+    is_open = not road.clauses and road.turns in (None, at_least(1))
+    return radius if is_open else min(radius, WIDEST)
+
+
+def _with_radius(road: Brief, radius: float) -> Brief:
+    """Asks for a least radius of the turns of which nothing is said."""
+    if not radius or road.radius is not None or road.sharpness is not None or road.hard:
+        return road
+    wide = {"radius": at_least(radius)}
+    turns = [each for each in road.clauses if each.kind not in STRAIGHT]
+    clauses = [
+        each.model_copy(update=wide if each.kind == "turn" and not (each.radius or each.sharpness) else {})
+        for each in road.clauses
+    ]
+    return road.model_copy(update={"clauses": tuple(clauses)} if turns else wide)
+
+
 def _drivable(road: Brief, metres: float, speed: float, is_said: bool) -> Brief:
     """Asks for bends that the tested car can drive at its speed, or else for a straight before them."""
     radius, metres = float(ceil(speed**2 / ASIDE)), float(ceil(metres))
@@ -169,15 +222,7 @@ def _drivable(road: Brief, metres: float, speed: float, is_said: bool) -> Brief:
     lengths = span(road.clauses[0].length) if has_straight else Range(0.0)
     if lengths.lo >= metres or (road.clauses and not turns) or span(road.turns).hi == 0:
         return road
-    if road.radius is None and road.sharpness is None and not road.hard:
-        wide = {"radius": at_least(radius)}
-        clauses = [
-            each.model_copy(
-                update=wide if each.kind == "turn" and not (each.radius or each.sharpness) else {}
-            )
-            for each in road.clauses
-        ]
-        road = road.model_copy(update={"clauses": tuple(clauses)} if turns else wide)
+    road = _with_radius(road, radius)
     found = outline(road)
     least = found.each_turn.radius
     radii = [each.feature.radius for each in found.groups if each.feature.kind == "turn"] or [least]
@@ -195,47 +240,3 @@ def _drivable(road: Brief, metres: float, speed: float, is_said: bool) -> Brief:
         return road.model_copy(update={"starts": straight})
     rest = road.clauses[1:] if has_straight else road.clauses
     return road.model_copy(update={"clauses": (straight, *rest), "starts": None})
-
-
-def check_scene(scene: Scene, brief: Brief) -> None:
-    """Raises BriefError if a scene needs what the Brief excludes; what the Brief leaves open is no fault."""
-    if scene != Scene() and (fault := next(_faults(scene, brief), "")):
-        raise BriefError(fault)
-
-
-def _faults(scene: Scene, brief: Brief) -> Iterator[str]:
-    roads = brief.stretches or (brief,)
-    along = max(span(road.lanes).hi for road in roads)
-    is_one_way = all((road.lanes_text or "1+1").endswith("+0") for road in roads)
-    has = {"lane": along >= 2, "far": along >= 3, "oncoming": not is_one_way}
-    counts: dict[str, float] = {}
-    if brief.map is None:
-        places = [place for place in brief.junctions if place.kind not in LANE_KINDS]
-        kinds = {place.kind for place in places}
-        has |= {"ramp": bool(kinds & {*RAMPS}), "junction": bool(kinds - {*RAMPS})}
-        has |= {"roundabout": "roundabout" in kinds, "crosswalk": any(place.crosswalk for place in places)}
-        turns = sum(outline(road.as_stretch).turns.hi for road in roads)
-        counts = {"junction": len(places), "turn": turns}
-    lacks = {name: need for name, need in NEEDS.items() if not has.get(name, True)}
-    if scene.turn and "junction" in lacks:
-        yield f"the tested car that goes {scene.turn} at a junction needs {lacks['junction']}"
-    if scene.oncoming in FLOWS and is_one_way:
-        yield f"oncoming traffic needs {lacks['oncoming']}"
-    for role in scene.actors:
-        # who cuts in or overtakes can also come along the oncoming lane
-        passes = role.where == "lane" and role.actions and role.actions[0].what in ("cut_in", "overtake")
-        if (need := lacks.get(role.where)) and (is_one_way or not passes):
-            yield f"'{role}' needs {need}"
-        leaves = role.where in ("ahead", "behind") and any(each.what in LEAVES for each in role.actions)
-        if leaves and along < 2:
-            yield f"'{role}' needs {NEEDS['lane']}"
-        for mark in filter(None, (role.at, *(action.at for action in role.actions))):
-            if mark.number > (count := counts.get(mark.of, inf)):
-                yield f"'{role}' needs {mark.of} {mark.number}, and there are {count:g}; change one of them"
-    if scene.lane and abs(scene.lane) > along:
-        yield f"the tested car's lane={scene.lane} needs more lanes; write lanes={abs(scene.lane)}"
-    inner, outer = scene.lanes_in_and_out(brief.left_hand)
-    if scene.lane and (outer > scene.lane - 1 if scene.lane > 0 else inner > -scene.lane - 1):
-        yield f"there is no lane beside the tested car's lane={scene.lane} for those who are there; change it"
-    if 2 <= along < (least := scene.lanes_needed(brief.left_hand)):
-        yield f"the scene needs {least} lanes in the direction of the tested car; write lanes={least}"

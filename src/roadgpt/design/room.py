@@ -12,6 +12,10 @@ from roadgpt.design.road_search import sufficient_map
 from roadgpt.road import World
 from roadgpt.road.world import KMH, Limits
 
+MOTORWAY_LIMIT = (
+    110 / KMH
+)  # m/s, the design speed of urban and rural freeways is 110 km/h or more (Green Book, ch. 8)
+
 
 def world_for(brief: Brief | None, world: World) -> World:
     """Returns the World for the roads of a Brief.
@@ -19,15 +23,19 @@ def world_for(brief: Brief | None, world: World) -> World:
     The Brief sets the scene, and a surface that it or the scene names, such as a wet road, the friction. For
     a single road, the Brief also sets the lanes and the centre line. The map gets the size that the Brief
     gives; if it gives none and roads of this Brief do not fit on the usual map, a larger map is set. A value
-    that was given to the World is kept; the usual speed limit grows to the speed at which a scene begins.
+    that was given to the World is kept; the usual speed limit grows to the speed at which a scene begins, and
+    to MOTORWAY_LIMIT for a scene on a motorway.
     Raises BriefError if the scene needs what the Brief excludes."""
     found = world.in_scene_of(brief).on_surface_of(brief)
     if brief is not None:
-        brief = fitted(brief, found.scene, found.limits.speed_limit)
-        if found.first_speed > found.limits.speed_limit == Limits().speed_limit:
-            found = found.changed(speed_limit=found.first_speed)
+        limit = found.limits.speed_limit
+        if limit == Limits().speed_limit:
+            usual = MOTORWAY_LIMIT if brief.motorway and found.scene != Scene() else limit
+            if max(found.first_speed, usual) > limit:
+                found = found.changed(speed_limit=max(found.first_speed, usual))
+        brief = fitted(brief, found.scene, found.limits.speed_limit, world.given_map)
     found = found.with_lanes_of(brief)
-    if brief is None or "map_size" in world.site.model_fields_set:
+    if brief is None or world.given_map is not None:
         return found
     if brief.map_size is not None:
         return found.changed(map_size=brief.map_size)
@@ -66,7 +74,7 @@ def lane_remarks(brief: Brief, found: World) -> Iterator[str]:
 
 def need_remark(brief: Brief, found: World) -> str:
     """Returns a sentence on what the scene needs of the road and the words leave open; empty if nothing."""
-    asked = fitted(brief, found.scene, found.first_speed)
+    asked = fitted(brief, found.scene, found.first_speed, found.given_map)
     return "" if asked == brief else f"the scene needs more than the words say: {plan(asked)}"
 
 
@@ -84,6 +92,9 @@ def scene_remark(brief: Brief, found: World) -> str:
 def speed_remark(brief: Brief, found: World) -> str:
     """Returns a sentence on the usual speed limit, which a design speed does not change."""
     speeds = sorted({road.speed for road in brief.roads if road.speed is not None})
+    if brief.motorway and found.limits.speed_limit == MOTORWAY_LIMIT:
+        limit = f"{KMH * MOTORWAY_LIMIT:g} km/h"
+        return f"on a motorway, all drive at {limit} at most; --speed-limit gives another limit"
     if not speeds or found.limits.speed_limit != Limits().speed_limit:
         return ""
     said = " and ".join(f"{speed:g}" for speed in speeds)

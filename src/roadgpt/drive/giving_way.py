@@ -68,7 +68,7 @@ class GivingWay:
             bend = max(map(abs, line.curvature[first : last + 1]))
             ahead = 0.0 if stop is None else lanes[before].length - stop
             rows = [row for key in keys for row in _ways(lanes, leg, key, start, end)]
-            top = min(turning_speed(bend), world.limits.speed_limit)
+            top = min(turning_speed(bend), world.driven_speed)
             self._junctions.append((start - ahead, top, np.array(rows)))
         self._changes: list[tuple[float, float, float]] = []
         """For each change of lanes its first and last station, and the offset of the path after it."""

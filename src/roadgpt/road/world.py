@@ -6,6 +6,7 @@ plans have it. Options of commands and keys of settings files are made from the 
 ``description``, also from those of ``Parts``. So that help texts load nothing heavy, geometry is imported
 when it is needed."""
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import replace
@@ -405,10 +406,21 @@ class World(BaseModel):
         return self.changed(**changes) if changes else self
 
     @property
+    def given_map(self) -> float | None:
+        """The side of the map in metres, if one was given; None if it is the usual one."""
+        return self.site.map_size if "map_size" in self.site.model_fields_set else None
+
+    @property
     def first_speed(self) -> float:
         """The speed in m/s at which the tested car starts to roll among others: that of the scene, or the
         middle of its range, else the speed limit."""
         return self.limits.speed_limit if self.scene.speed is None else _middle(self.scene.speed) / KMH
+
+    @property
+    def driven_speed(self) -> float:
+        """The greatest speed in m/s at which the tested car wants to drive: that of the scene, where it
+        starts with one, else the speed limit."""
+        return min(self.first_speed or math.inf, self.limits.speed_limit)
 
     def friction_at(self, s: float) -> float:
         """Returns the friction at a station of the tested car's road: that of a slippery place, or the usual

@@ -107,7 +107,8 @@ def perform(
     brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
     world = world_for(brief, setup.staged(world, brief.left_hand))
     request = Request(words=brief.words, seed=seed, world=world, setup=setup)
-    brief = fitted(brief, request.world.scene, request.world.first_speed)
+    found = request.world
+    brief = fitted(brief, found.scene, found.first_speed, found.given_map)
     check_parts(setup, request.world)
     own = seed_of(seed, index)
     with counting(meter, f"road {index}"):
@@ -123,7 +124,7 @@ def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Mete
     with counting(meter or Meter.of(setup.chat), "reading"):
         try:
             limits = (world.site.map_size, world.limits.min_radius, world.limits.max_grade)
-            fixed = "map_size" in world.site.model_fields_set
+            fixed = world.given_map is not None
             return read(words, setup.reader, *limits, setup.chat, world.section.road_width, fixed)
         except NoRoomError as error:
             from roadgpt.design.advice import no_room

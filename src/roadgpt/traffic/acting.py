@@ -35,6 +35,7 @@ from roadgpt.traffic.way import GRIP, Way
 from roadgpt.traffic.ways import way_of
 
 ROLL = 4.0  # s, after which the first action begins whose begin the scene leaves open
+SETTLED = 1.0  # s, the same for who is in the tested car's lane at a distance that the scene says
 LAST = 2.5  # s before a meeting, from which on somebody who is moving no longer matches the tested car
 CATCH_UP = 1.0  # s, in which most of the way that is missing before a meeting is made good
 MATCHED = 3.0  # m/s^2, with which somebody matches the tested car
@@ -42,10 +43,15 @@ SHARPEST = 2.0  # sideways nobody moves faster than the speed ahead divided by t
 FAST = 250.0 / 3.6  # m/s, the most that a scene can ask for
 BRAKE, STOP = USUAL_BRAKING.values()
 CHANGE = 2.0  # m/s^2
+FIRM = 7.0  # m/s^2, the hardest with which one brakes behind others in its lane
 EASY = 4.0  # m/s^2, with which the tested car can stop before who stands or is slow
 TURNING = 20.0 / 3.6  # m/s, of vehicles that turn at a junction, at most
 CUT_IN = 10.0  # m, the gap at which one cuts in
 PASSED = 10.0  # m, the gap at which one has overtaken
+LANE, BESIDE_AFTER = (
+    3.5,
+    0.6,
+)  # m from lane to lane, and the share of a change after which one is clear of a car
 HEADWAY = 2.0  # s, of who is ahead
 BEHIND = 1.5  # s, of who is behind, and of several alike one behind another
 INTO = 1.0  # s of headway with which one turns in or merges ahead of the tested car
@@ -158,6 +164,14 @@ def drawn(thing: Role | Action, rng: np.random.Generator) -> dict[str, float]:
     return found
 
 
+def _slides(deed: Deed, by: float) -> float:
+    """Returns how many seconds a movement sideways by some metres lasts."""
+    lasts = math.pi / 2 * abs(by) / deed.n.get("lateral", LATERAL[deed.what])
+    if "duration" in deed.n and "lateral" not in deed.n:
+        lasts = deed.n["duration"] * (0.5 if deed.what == "swerve" else 1.0)
+    return max(lasts, math.pi * math.sqrt(abs(by) / 2 / GRIP), 1e-3)
+
+
 def reach(time: float, speed: float, goal: float, pull: float) -> float:
     """Returns how far one comes in some seconds whose speed changes to ``goal`` with ``pull``."""
     changes = min(time, abs(goal - speed) / max(pull, 1e-9))
@@ -173,7 +187,7 @@ class Act:
         events: dict[tuple[str, ...], float], name: tuple[str, str], alike: "list[Act]",
     ) -> None:  # fmt: skip
         """Draws its numbers, and places it as seen from the tested car, whose lane is ``path``. Raises
-        SceneError if it cannot be, or act, on this road.
+        SceneError if the road has no such place.
 
         Args:
             events: when what has begun and ended in the scene.
@@ -218,6 +232,10 @@ class Act:
         """How far its middle is ahead of the tested car's at first, and how much faster it is, if it keeps to
         that until its first action."""
         turns_off = self.is_along and "turn_off" in whats
+        is_near = self.where in ("ahead", "behind") and not {"gap", "headway", "lead"}.isdisjoint(self.n)
+        self.rolls = SETTLED if is_near else ROLL
+        self.is_placed = bool(role.at) or not {*PLACES}.isdisjoint(self.n)
+        """Whether the scene says where it is at first."""
         if self.is_along:
             self.s = self._beside()
             self.t = self._aside(self.s)
@@ -237,7 +255,10 @@ class Act:
         """Whether it stands until it has to go to be in time for its meeting."""
         self.matches = bool(self.meeting and v and not turns_off)
         """Whether it comes to its meeting when the tested car does."""
-        self.goal = self.v = min(v, self.way.bend(self.s, self.t, self.forward)[1])
+        self.v = v
+        self.put(self.s)
+        self.ahead: tuple[float, float] | None = None
+        """How far it is to who is ahead of it in its lane, in metres, and how fast that moves along it."""
         self.pull, self.begun = CHANGE, 0
         self.unseen: Deed | None = None
         """The first action that began when it was gone."""
@@ -248,7 +269,11 @@ class Act:
         if self.copy and self.crosses and self.meeting:
             aside = math.sin(path.pose(self.meeting.car)[3] - self.way.pose(self.meeting.own)[3])
             self.t = self.copy * (self.size.width + 0.5) * math.copysign(1.0, aside)
-        self._check()
+
+    def put(self, s: float) -> None:
+        """Puts it at a station of its way, with a speed that is possible there."""
+        self.s = s
+        self.goal = self.v = min(self.v, self.way.bend(s, self.t, self.forward)[1])
 
     def _deed(self, action: Action, n: dict[str, float]) -> Deed:
         if action.at and not action.at.what:
@@ -271,7 +296,9 @@ class Act:
             return min(TURNING, self.limit)
         return self.limit if self.where == "oncoming" else min(self.car.v, self.limit) or self.limit
 
-    def _check(self) -> None:
+    def check(self) -> None:
+        """Raises SceneError if it cannot be, or act, where it is."""
+
         def refuse(why: str) -> None:
             where = self.where.replace("lane", "in the next lane")
             raise SceneError(f"the {self.kind.replace('_', ' ')} {where} {why}")
@@ -390,19 +417,24 @@ class Act:
         car, cue = self.car, self.cue
         away = self.forward * self.v - car.v
         rate = -away if self.where == "behind" else away
-        slower, said = max(-rate, 0.0), self._said_gap(cue)
+        slower, said, v = max(-rate, 0.0), self._said_gap(cue), self.v
         if self.where == "oncoming" and self.first in HEAD_ON and self.deeds[0].is_open:
             t = self._place(self.where, car.s)
             aside = abs(self._leads_to(self.deeds[0], car.s, t) - self._aside(car.s))
             cue["ttc"] = 1.0 + math.pi / 2 * aside / cue.get("lateral", LATERAL[self.deeds[0].what])
         if "ttc" in cue and rate < 0:
             at = -rate * cue["ttc"]
-        elif said is not None:
-            at = said
-        elif self.first == "cut_in":
-            at = CUT_IN
+        elif said is not None or self.first == "cut_in":
+            at = CUT_IN if said is None else said
+            if self.first == "cut_in":
+                at -= rate * self._until_over_line(self.deeds[0], car.s, self._place(self.where, car.s))
         elif self.first == "overtake" and self.forward > 0:
-            at = car.v if self.where == "behind" else -2 * self.half - car.v
+            clears = BESIDE_AFTER * _slides(self.deeds[0], LANE)
+            at = (
+                max(car.v, max(v - car.v, 0.0) * clears + STANDS)
+                if self.where == "behind"
+                else -2 * self.half - car.v
+            )
         elif self.where == "behind":
             return BEHIND * self.v
         elif self.where in ("lane", "far"):
@@ -564,7 +596,7 @@ class Act:
         if "ttc" in n and self.meeting:
             return self._eta() - n["ttc"]
         if {"gap", "headway", "ttc"} & {*n}:
-            return self._until(n)
+            return self._until(deed)
         before = 0.0 if not self.phases else self._left() if len(self.phases) == 1 else math.inf
         if deed.what == "turn_off" and self.meeting:
             room = self.meeting.own - self.s - (self.v**2 - n.get("to", TURNING) ** 2) / 2 / STOP
@@ -574,12 +606,14 @@ class Act:
         if self.meeting and self.waits:
             way = self.forward * (self.meeting.own - self.s)
             return self._eta() - time_over(0.0, max(way, 0.0), *self._starts(n))
-        return self._eta() - LAST if self.meeting else ROLL - self.time
+        return self._eta() - LAST if self.meeting else self.rolls - self.time
 
-    def _until(self, n: Mapping[str, float]) -> float:
+    def _until(self, deed: Deed) -> float:
         """Returns in how many seconds a gap, a headway or a time to collision is reached, from either side;
-        if it is there from the begin on, the action begins after ROLL."""
-        gap, rate = self.gap()
+        if it is there from the begin on, the action begins after ROLL. Where the scene leaves open where
+        somebody is at first who cuts in or crosses, the gap is that when it comes over the line into the
+        tested car's lane."""
+        n, (gap, rate) = deed.n, self.gap()
         if "ttc" in n:
             aim = -rate * n["ttc"]
             if rate >= 0:
@@ -587,17 +621,34 @@ class Act:
         else:
             behind = self.car.v if self.along > self.car.s else self.v
             aim = n["gap"] if "gap" in n else n["headway"] * behind
+            if not self.begun and not self.is_placed and deed.what in ("cut_in", "cross"):
+                aim -= rate * self._until_over_line(deed, self.along, self.t)
         off = gap - aim
         first = self.signs.setdefault(self.begun, off)
         if abs(first) < 0.3:
-            return ROLL - self.time
+            return self.rolls - self.time
         if first * off <= 0:
             return 0.0
         return -off / rate if off * rate < 0 else math.inf
 
+    def _until_over_line(self, deed: Deed, s: float, t: float) -> float:
+        """Returns how many seconds after its begin from a place an action leads over the line of the tested
+        car's lane."""
+        half = float(self.world.profile_of(self.road).width(self.path.to_road(s))) / 2
+        if deed.what == "cross":
+            assert self.way.meets is not None
+            way = max(self.way.meets[0] - half - self.size.length / 2, 0.0)
+            return time_over(0.0, way, *self._starts(deed.n))
+        by = self._leads_to(deed, s, t) - t
+        over = min(max((abs(t) - half - self.size.width / 2) / max(abs(by), 1e-6), 0.0), 1.0)
+        return _slides(deed, by) * math.acos(1.0 - 2.0 * over) / math.pi
+
     def gap(self) -> tuple[float, float]:
         """Returns the distance to the tested car from bumper to bumper, and how fast it grows; of those in
-        other lanes, it is negative where they are beside or behind the car."""
+        other lanes, it is negative where they are beside or behind the car. Of who crosses, it is that to
+        where the paths meet."""
+        if self.crosses and self.meeting:
+            return self.meeting.car - self.car.s - self.car.length / 2, -self.car.v
         apart, away = self.along - self.car.s, self.forward * self.v - self.car.v
         sign = -1 if apart < 0 and self.where in IN_LANE else 1
         return sign * apart - self.half, sign * away
@@ -620,10 +671,7 @@ class Act:
         pull = CHANGE if accel is None else abs(accel)
         if what in LATERAL:
             place = self._leads_to(deed, self.along, self.t)
-            slides = math.pi / 2 * abs(place - self.t) / n.get("lateral", LATERAL[what])
-            if lasts is not None and "lateral" not in n:
-                slides = lasts * (0.5 if what == "swerve" else 1.0)
-            slides = max(slides, math.pi * math.sqrt(abs(place - self.t) / 2 / GRIP), 1e-3)
+            slides = _slides(deed, place - self.t)
             goal = to if to is not None else None if accel is None else FAST * (accel > 0)
             out = Phase(goal, pull, place, slides, until="there")
             back = out._replace(to=self.t)
@@ -730,6 +778,11 @@ class Act:
             self.v = self.goal
         stretch, fastest = self.way.bend(self.s, self.t, self.forward)
         self.v = min(self.v, fastest)
+        if self.ahead is not None and self.v > 0:
+            gap, speed = self.ahead
+            safe = math.sqrt(speed**2 + 2 * EASY * max(gap - self.v * STEP - JAM / 2, 0.0))
+            if (safe := max(safe, before - FIRM * time, 0.0)) < self.v:
+                self.v, speeds_up = safe, time
         gone = (before + self.v) / 2 * speeds_up + self.v * (time - speeds_up)
         self.s += self.forward * gone / stretch
         if self.slide is None:

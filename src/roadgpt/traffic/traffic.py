@@ -35,8 +35,8 @@ class Mover(Protocol):
     actors: list[Actor]
     """Its own actors; the list may grow at its end."""
 
-    def start(self, car: TestedCar) -> FloatArray:
-        """Returns the states at time 0."""
+    def start(self, car: TestedCar, bodies: FloatArray) -> FloatArray:
+        """Returns the states at time 0; ``bodies``, as in ``move``, are those of the movers before it."""
         ...
 
     def move(self, time: float, car: TestedCar, bodies: FloatArray) -> FloatArray:
@@ -62,7 +62,7 @@ class Traffic:
     def advance(self, car: TestedCar) -> None:
         """Computes the next sample. Call it at 0, 0.1, 0.2 ... s, with the tested car at that time."""
         if not self._samples:
-            self._add([mover.start(car) for mover, _ in self._movers])
+            self._start(car)
         time, now = (len(self._samples) - 1) * STEP, self._samples[-1]
         is_there, states = ~np.isnan(now[:, 0]), []
         for mover, own in self._movers:
@@ -70,6 +70,15 @@ class Traffic:
             is_other[own] = False
             states.append(mover.move(time, car, np.hstack([now[is_other], self._sizes[is_other]])))
         self._add(states)
+
+    def _start(self, car: TestedCar) -> None:
+        rows, bodies = list[FloatArray](), np.empty((0, 7))
+        for mover, _ in self._movers:
+            rows.append(mover.start(car, bodies))
+            sizes = np.array([actor.size[:2] for actor in mover.actors]).reshape(-1, 2)
+            there = ~np.isnan(rows[-1][:, 0])
+            bodies = np.vstack([bodies, np.hstack([rows[-1], sizes])[there]])
+        self._add(rows)
 
     def _add(self, states: Sequence[FloatArray]) -> None:
         before = len(self.actors)

@@ -27,7 +27,7 @@ from roadgpt.traffic.way import SPACING, Way
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
-KERB = 0.1  # m, between the lanes and who stands before a crosswalk
+KERB = 1.1  # m, between the lanes and who stands before a crosswalk, to walk at its speed on it (CPNA)
 BEFORE, BEHIND = 5.0, 8.0  # m, from a junction to those who cross the road before and behind it
 DRIVEWAY = 6.0  # m, radius in which somebody turns from beside the road into a lane
 REACH = 300.0  # m of a way before and behind the lanes for which it was chosen, as far as there are others
@@ -72,7 +72,7 @@ def way_of(role: Role, near: float, road: "Road", world: "World", away: float | 
 def _across(role: Role, near: float, road: "Road", world: "World", away: float | None) -> Way:
     """Returns the way straight across the road, at right angles to the tested car's path, or into its lane
     for who turns in."""
-    s = near if role.where != "crosswalk" else _crosswalk(near, road)
+    s = near if role.where != "crosswalk" else _crosswalk(near, road, role.at is None)
     for passage in road.passages if role.where != "crosswalk" else ():
         if passage.start - BEFORE < s < passage.end + BEHIND:
             s = passage.end + BEHIND
@@ -104,12 +104,18 @@ def _across(role: Role, near: float, road: "Road", world: "World", away: float |
     return replace(way, meets=met)
 
 
-def _crosswalk(near: float, road: "Road") -> float:
+def _crosswalk(near: float, road: "Road", is_open: bool) -> float:
+    """Returns the station of the first crosswalk from ``near`` on; where the place is left open, that behind
+    a junction at which the tested car turns."""
     away = CROSSWALK[0] + CROSSWALK[1] / 2
-    crossed = road.network.crossed if is_route(road) else ()
-    for passage in road.passages:
-        for end, s in ((passage.arrival, passage.start - away), (passage.departure, passage.end + away)):
-            if end in crossed and s >= near:
+    network = road.network if is_route(road) else None
+    for passage in road.passages if network else ():
+        assert network is not None
+        before, behind = (passage.arrival, passage.start - away), (passage.departure, passage.end + away)
+        turn = abs(float(wrap_angle(road.heading(passage.end) - road.heading(passage.start))))
+        turns = is_open and (turn > OPPOSITE or passage.entered.id in network.roundabout_of)
+        for end, s in (behind, before) if turns else (before, behind):
+            if end in network.crossed and s >= near:
                 return float(s)
     raise SceneError(f"the route passes no crosswalk after {near:.0f} m; write crosswalk behind a junction")
 

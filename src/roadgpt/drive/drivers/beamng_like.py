@@ -103,7 +103,7 @@ class BeamngLike:
         friction = world.site.friction if self.assumed_friction is None else self.assumed_friction
         most = 0.95 * friction
         limits = DrivingLimits(
-            min(self.risk, most), min(BRAKING, most), min(TRACTION, most), world.limits.speed_limit
+            min(self.risk, most), min(BRAKING, most), min(TRACTION, most), world.driven_speed
         )
         # Like BeamNG's plan, this one considers slopes but not crests. Superelevation is an assumption.
         level = replace(line, crest=[0.0] * len(line.crest))

@@ -123,7 +123,7 @@ class LaneCentring:
         self._line = line_along(road, middle)
         heights = road.at(s, middle)[:, 2].tolist()
         self._heights = heights + heights[-1:] * (len(self._line.x) - len(heights))
-        self._most = world.limits.speed_limit
+        self._most = world.driven_speed
         self._speed_limit = world.first_speed if self._is_robot else self._most
         self._lane_limits = lane_limits(road, world, self._line)
         self._sight = min(self.sight, visual_range(world.scene, "lane"))

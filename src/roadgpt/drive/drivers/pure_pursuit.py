@@ -45,7 +45,7 @@ class PurePursuit:
         del seed  # the same road is driven the same way every time
         line = line_along(road, world.profile_of(road).middle(stations(road)))
         lateral = min(self.risk, 0.95 * world.site.friction)
-        limits = DrivingLimits(lateral, lateral, lateral, world.limits.speed_limit)
+        limits = DrivingLimits(lateral, lateral, lateral, world.driven_speed)
         self._line, self._speed = line, plan_speed(line, limits, highest_speeds(road, world, line))
         self._signs, self._distance = StopSigns(road), KeepingDistance(line)
 

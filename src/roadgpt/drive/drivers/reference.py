@@ -57,7 +57,7 @@ class Reference:
         del seed  # the same road is driven the same way every time
         line = line_along(road, world.profile_of(road).middle(stations(road)))
         lateral = min(self.risk, FRICTION_USED * world.site.friction)
-        limits = DrivingLimits(lateral, BRAKING * lateral, TRACTION * lateral, world.limits.speed_limit)
+        limits = DrivingLimits(lateral, BRAKING * lateral, TRACTION * lateral, world.driven_speed)
         self._line, self._speed = line, plan_speed(line, limits, highest_speeds(road, world, line))
         self._signs, self._distance = StopSigns(road), KeepingDistance(line)
 

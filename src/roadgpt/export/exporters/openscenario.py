@@ -334,8 +334,9 @@ def _environment(action: XmlElement, road: Road, world: World) -> None:
     environment = action.add("Environment", {"name": "road"})
     environment.add("RoadCondition", {"frictionScaleFactor": world.site.friction})
     scene = world.scene
-    if scene.light == "night":
-        environment.add("TimeOfDay", {"animation": "false", "dateTime": DATE})
+    if scene.clock or scene.light == "night":
+        time = DATE.replace("00:00", scene.clock, 1) if scene.clock else DATE
+        environment.add("TimeOfDay", {"animation": "false", "dateTime": time})
     if not (scene.fog or scene.rain or scene.light):
         return
     weather = environment.add("Weather")

@@ -46,6 +46,9 @@ KEPT = 4  # lanes behind a vehicle that are remembered, and ahead of it that are
 TURNS_BACK = 1e-6  # how often somebody leaves on the road on which it came, where there are other exits
 CLEAR = 8.0  # m, from the middle of a vehicle at the start to the place where it stops
 LEAST_SPEED = 4.0  # m/s, with which a vehicle comes onto the map at least
+APART = 12.0  # m, from the middle of a vehicle at the start to who stands or drives there by a scene
+NOBODY = np.empty((0, 7))
+ABREAST = 15.0  # m, from the tested car to somebody in another lane at the start
 AHEAD, BEHIND = 30.0, 15.0  # m before and behind the tested car where nobody is at first, and 2 s of its way
 
 
@@ -92,7 +95,7 @@ class IdmMover:
         self._tick, self._step = 0, f.step
         self._goes_on = np.diff(self.lanes.onward_of) > 0
 
-    def start(self, car: "TestedCar | None") -> FloatArray:
+    def start(self, car: "TestedCar | None", bodies: FloatArray = NOBODY) -> FloatArray:
         """Places the vehicles that are there at the start, and returns their states."""
         self._see(car)
         for n in range(len(self.ids)) if self._is_filled else ():
@@ -105,11 +108,12 @@ class IdmMover:
                 continue
             part = (end - begin) / count
             for k in range(count):
-                s = begin + part * (k + float(self._rng.uniform(0.3, 0.7)))
+                s = begin + part * (k + float(self._rng.uniform(0.4, 0.6)))
                 x, y, _, _, bend = place_on(self.lanes, n, s)
-                if car is not None and _is_close(car, x, y):
+                near = np.hypot(bodies[:, 0] - x, bodies[:, 1] - y) < bodies[:, 5] / 2 + APART
+                if (car is not None and _is_close(car, x, y, n in self._path[1])) or near.any():
                     continue
-                far = max(part * 0.4 - 8.0, 0.0)
+                far = max(part * 0.8 - 8.0, 0.0)
                 most = min(bend, far / 1.5, self._stoppable(n, s))
                 self.enter(n, s, most)
         return self._shown()
@@ -268,8 +272,12 @@ class IdmMover:
         return out
 
 
-def _is_close(car: "TestedCar", x: float, y: float) -> bool:
+def _is_close(car: "TestedCar", x: float, y: float, is_own: bool) -> bool:
+    """Returns whether a place is too close to the tested car for somebody to be there at first, in a lane
+    that it follows or in another one."""
     dx, dy = x - car.x, y - car.y
+    if not is_own:
+        return math.hypot(dx, dy) < ABREAST
     along = dx * math.cos(car.heading) + dy * math.sin(car.heading)
     near = AHEAD + 2.0 * car.speed
     return bool(-BEHIND - 2.0 * car.speed < along < near and math.hypot(dx, dy) < near)

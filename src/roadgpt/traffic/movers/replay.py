@@ -15,9 +15,9 @@ class Replay:
         self.actors: list[Actor] = [*stage.tracks.actors]
         self._states = stage.tracks.states
 
-    def start(self, car: TestedCar) -> FloatArray:
+    def start(self, car: TestedCar, bodies: FloatArray) -> FloatArray:
         """Returns the first sample of the tracks."""
-        del car
+        del car, bodies
         return np.asarray(self._states[0])
 
     def move(self, time: float, car: TestedCar, bodies: FloatArray) -> FloatArray:

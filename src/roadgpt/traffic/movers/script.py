@@ -6,13 +6,17 @@ from collections import Counter
 
 import numpy as np
 
-from roadgpt.brief.scene import DOINGS
+from roadgpt.brief.scene import DOINGS, LEAVES, MOST_MORE
 from roadgpt.road.road import START
-from roadgpt.traffic.acting import Act, Car
-from roadgpt.traffic.actor import SIZES, Actor, FloatArray, TestedCar, corners
+from roadgpt.traffic.acting import BEHIND, STANDS, Act, Car
+from roadgpt.traffic.actor import HEADING, SIZES, SPEED, Actor, FloatArray, TestedCar, corners
 from roadgpt.traffic.places import parked_rows
 from roadgpt.traffic.traffic import Stage
-from roadgpt.traffic.way import Way
+from roadgpt.traffic.way import SPACING, Way
+
+UNCOVERED = 3.0  # s that who changes lanes has left before who stands behind it is reached
+IN_SIGHT = 150.0  # m ahead, in which somebody sees others in its lane
+BESIDE = 0.2  # m between two who pass each other, at least
 
 
 class Script:
@@ -39,12 +43,38 @@ class Script:
         for number, role in enumerate(self._stage.world.scene.actors):
             kinds[role.kind] += 1
             name, alike = (role.kind, str(kinds[role.kind])), list[Act]()
-            low, high = int(role.count.lo or 1), int(role.count.hi or 50)
+            low = int(role.count.lo or 1)
+            high = int(role.count.hi or low + MOST_MORE)
             for copy in range(np.random.default_rng([self._stage.seed, number]).integers(low, high + 1)):
                 rng = np.random.default_rng([self._stage.seed, number, copy])
                 alike.append(Act(self._stage, self._way, role, car, rng, events, name, alike))
             found += alike
+        self._order(found)
         return found
+
+    def _order(self, acts: list[Act]) -> None:
+        """Puts those ahead in the tested car's lane behind one another where the scene leaves open where they
+        are: who stands beyond whom, and who drives beyond those who stand. Who stands behind somebody that
+        leaves the lane is as far from it, where that happens, as the scene says."""
+        ahead = [act for act in acts if act.where == "ahead" and act.is_along and not act.role.at]
+        leavers = [act for act in ahead if act.first in LEAVES and act.v > 0]
+        last: Act | None = None
+        for act in ahead:
+            if act.v == 0 and "station" not in act.n and "lead" not in act.n:
+                if leavers and leavers[0] is not act and act.copy == 0:
+                    leaver = leavers[0]
+                    gap = act.n.get("gap", UNCOVERED * leaver.v)
+                    begins = leaver.s + max(leaver.wait(leaver.deeds[0]), 0.0) * leaver.v
+                    act.put(max(act.s, begins + gap + (act.size.length + leaver.size.length) / 2))
+                elif last is not None and (act.copy or not act.is_placed):
+                    act.put(max(act.s, last.s + (last.size.length + act.size.length) / 2 + STANDS))
+                last = act
+        for act in ahead if last is not None else ():
+            assert last is not None
+            if act.v > 0 and act.first not in LEAVES and not act.is_placed and act.s < last.s:
+                act.put(last.s + (last.size.length + act.size.length) / 2 + BEHIND * act.v)
+        for act in acts:
+            act.check()
 
     def _seen(self, car: TestedCar) -> Car:
         s = self._way.from_road(car.s)
@@ -52,18 +82,55 @@ class Script:
         s += (car.x - x) * math.cos(heading) + (car.y - y) * math.sin(heading)
         return Car(s, car.speed, car.length, car.width)
 
-    def start(self, car: TestedCar) -> FloatArray:
+    def start(self, car: TestedCar, bodies: FloatArray) -> FloatArray:
         """Places everybody as seen from the tested car."""
+        del bodies
         self._acts = self._placed(self._seen(car))
         return self._states()
 
     def move(self, time: float, car: TestedCar, bodies: FloatArray) -> FloatArray:
-        """Returns the states of all actors STEP after ``time``. They react to nobody else's body."""
-        del bodies
+        """Returns the states of all actors STEP after ``time``. They slow down for others ahead in their
+        lane, but not for the tested car, which is to see to that itself."""
         seen = self._seen(car)
+        self._look(bodies)
         for act in self._acts:
             act.move(time, seen)
         return self._states()
+
+    def _look(self, bodies: FloatArray) -> None:
+        """Tells everybody along the tested car's lane how far it is to who is ahead of it there, and how fast
+        that moves."""
+        for act in self._acts:
+            act.ahead = None
+        drivers = [act for act in self._acts if act.way is self._way and act.v > 0]
+        states = [(*state, *act.size[:2]) for act in self._acts if (state := act.state()) is not None]
+        rows = np.vstack([np.array(states).reshape(-1, 7), bodies])
+        if not drivers or len(rows) < 2:
+            return
+        points, stations = self._way.points, self._way.stations
+        away = (points[:, None, 0] - rows[None, :, 0]) ** 2 + (points[:, None, 1] - rows[None, :, 1]) ** 2
+        nearest = away.argmin(axis=0)
+        heading = points[nearest, 3]
+        dx, dy = rows[:, 0] - points[nearest, 0], rows[:, 1] - points[nearest, 1]
+        along = stations[nearest] + dx * np.cos(heading) + dy * np.sin(heading)
+        left = dy * np.cos(heading) - dx * np.sin(heading)
+        is_on = away.min(axis=0) < (IN_SIGHT / 2) ** 2
+        turned = rows[:, HEADING] - heading
+        cos, sin = np.abs(np.cos(turned)), np.abs(np.sin(turned))
+        half = (rows[:, 5] * cos + rows[:, 6] * sin) / 2
+        wide = (rows[:, 6] * cos + rows[:, 5] * sin) / 2
+        speed = rows[:, SPEED] * np.cos(turned)
+        for act in drivers:
+            apart = act.forward * (along - act.s)
+            gap = apart - half - act.size.length / 2
+            sides = [act.t] if act.slide is None else [act.t, act.slide.begin + act.slide.by]
+            near = np.min([np.abs(left - each) for each in sides], axis=0)
+            is_ahead = (
+                is_on & (apart > SPACING) & (gap < IN_SIGHT) & (near < wide + act.size.width / 2 + BESIDE)
+            )
+            if is_ahead.any():
+                first = int(np.where(is_ahead, gap, np.inf).argmin())
+                act.ahead = float(gap[first]), max(act.forward * float(speed[first]), 0.0)
 
     def _states(self) -> FloatArray:
         nowhere = (np.nan,) * 5

@@ -26,7 +26,7 @@ from roadgpt.brief.readers.model.before import (
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.number_words import COUNTED, plain
 from roadgpt.brief.readers.model.ring_sizes import with_diameters
-from roadgpt.brief.readers.model.scenes import asked_in, may_be_of_a_scene, with_named, with_origin
+from roadgpt.brief.readers.model.scenes import asked_in, may_be_of_a_scene, with_named, with_origin, with_told
 from roadgpt.brief.readers.model.slots import SlottedText, Word, slot_name, slotted
 from roadgpt.brief.readers.model.trained import (
     ANY_WORLD,
@@ -252,7 +252,7 @@ def _with_confidence(
         "beside": tuple(dict.fromkeys(kept)),  # the roads of a map may be closed loops
     }
     made = with_diameters(asks, draft.tokens, text).model_copy(update=found)
-    return with_named(with_origin(made, text))
+    return with_told(with_named(with_origin(made, text)), words)
 
 
 def _other(found: Sequence[ScoredPlan[Brief]], brief: Brief, text: SlottedText) -> str:

@@ -1,14 +1,16 @@
 """What stands among a description beside the shape of its road: the scene, the kind of road, its design speed
 and where one comes from. In the tokens of a plan it follows the road; here both are put together."""
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, get_args
 
 from roadgpt.brief.feasible import is_possible
-from roadgpt.brief.languages import TABLE, word_set
+from roadgpt.brief.languages import TABLE, pattern_of, word_set
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import SCENE, read_plan
+from roadgpt.brief.readers.model.clock import told_time
 from roadgpt.brief.readers.model.slots import NumberSlot, SlottedText
 from roadgpt.brief.readers.model.vocabulary import WISHES, plan_of
 from roadgpt.brief.scene import Land, Scene
@@ -98,6 +100,10 @@ def things_in(brief: Brief) -> frozenset[str]:
     return frozenset(filter(None, [*kinds, *things, *lands, *others, scene.light, scene.surface]))
 
 
+SMALL_HOURS = ("22", "23", "00", "01", "02", "03", "04")
+ON_BOTH_SIDES = pattern_of("both_sides", flags=re.IGNORECASE)
+
+
 def joined(road: Brief, told: Brief) -> Brief:
     """Returns a road with what is told beside it. A design speed that the road cannot have gives way."""
     names = ["scene"] if road.map is not None else ["surroundings", "speed", "comes_from", "scene"]
@@ -127,6 +133,22 @@ def with_named(brief: Brief) -> Brief:
         else:
             fields |= new
     return brief.model_copy(update={"scene": Scene(**fields), "beside": tuple(beside)})
+
+
+def with_told(brief: Brief, words: str) -> Brief:
+    """Returns a Brief whose scene has what the networks do not write: the time of day that the words tell,
+    which is at night if it is in the small hours, and parked cars on both sides where they say so."""
+    scene = brief.scene
+    if scene == Scene():
+        return brief
+    fields: dict[str, Any] = {}
+    if len(scene.parked) == 1 and ON_BOTH_SIDES.search(words):
+        fields["parked"] = ("left", "right")
+    if clock := told_time(words):
+        fields["clock"] = clock
+        if scene.light is None and clock[:2] in SMALL_HOURS:
+            fields["light"] = "night"
+    return brief.model_copy(update={"scene": scene.model_copy(update=fields)}) if fields else brief
 
 
 def with_origin(brief: Brief, text: SlottedText) -> Brief:

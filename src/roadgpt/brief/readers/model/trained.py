@@ -19,6 +19,7 @@ from roadgpt.brief.readers.model.ring_sizes import LEAST, diameters
 from roadgpt.brief.readers.model.scenes import asked_in, may_be_of_a_scene, told_in, without_scene
 from roadgpt.brief.readers.model.slots import NumberSlot, SlottedText, Word
 from roadgpt.brief.readers.model.vocabulary import REFUSALS, ROUNDABOUT, SLOT_TOKENS, WISHES, change_of
+from roadgpt.brief.scene import Scene
 from roadgpt.brief.words import SURE
 from roadgpt.errors import RoadGPTError
 
@@ -270,8 +271,9 @@ def chosen(
     scenes also if a word may be of a scene, or the text has more than ``SHORT`` words. A network plan is a
     route, a map, or a plan with words that ``roads`` does not know. ``routes`` is chosen in these cases:
 
-    - It writes a network plan with a confidence of at least ``GUESS``. The confidence of ``roads`` is then
-      ignored, because ``roads`` may be sure that "crossroads, sharp left" is a bend.
+    - It writes a network plan with a confidence of at least ``GUESS``, or one with a scene for a text that
+      may be of one. The confidence of ``roads`` is then ignored, because ``roads`` may be sure that
+      "crossroads, sharp left" is a bend, and knows no scenes.
     - It writes a network plan, and ``roads`` has no plan of higher confidence.
     - It refuses the description, and the confidence of ``roads`` in a plan is less than ``SURE``.
     - ``roads`` names a junction or the like beside the road, or as the cause of a refusal. ``routes`` then
@@ -281,12 +283,14 @@ def chosen(
 
     ``refuse_from`` is the smallest probability of a refusal at which a refusal is allowed as a plan; None
     takes the value that was fitted to each network."""
-    is_story = len(text.words) > SHORT or may_be_of_a_scene(text)
+    is_of_scene = may_be_of_a_scene(text)
+    is_story = len(text.words) > SHORT or is_of_scene
     is_asked = may_tell_a_route(words) or (routes is not None and routes.network.has_scenes and is_story)
     read = routes.plans(text, refuse_from) if routes and is_asked else ()
     is_route = bool(read) and _is_route(read[0], roads)
     sure = _confidence(routes, read, text) if routes and is_route else 0.0
-    if routes and is_route and sure >= GUESS:
+    tells_scene = is_of_scene and bool(read) and read[0].asks is not None and read[0].asks.scene != Scene()
+    if routes and ((is_route and sure >= GUESS) or tells_scene):
         return routes, read
     found = roads.plans(text, refuse_from)
     if routes and found and not TOLD_ON_ROUTES.isdisjoint(found[0].tokens):
