@@ -19,6 +19,7 @@ from roadgpt.brief.scene import (
     DOINGS,
     MOVING,
     NUMBERS,
+    ON_ITS_WAY,
     USUAL_BRAKING,
     USUAL_SPEEDS,
     Action,
@@ -69,6 +70,7 @@ PULL: Mapping[str, float] = {
 """The acceleration from rest in m/s^2. The bicycle of Euro NCAP's CBLA reaches 15 km/h within 3.5 m."""
 PATH, RUNS, RUNNING_PATH = 1.0, 6.0 / 3.6, 1.5
 """Euro NCAP's persons reach their speed within 1 m (CPNA), or 1.5 m if they run (CPFA)."""
+QUICKEST = 10.0  # m/s^2, with which a person starts at most
 HEAD_ON: tuple[What, ...] = ("drift", "wrong_way", "overtake")
 """What leads who comes towards the tested car into its lane."""
 CROSSINGS = ("crossing", "crosswalk")
@@ -369,6 +371,9 @@ class Act:
         if self.v == 0:
             away = self.n.get("away", NEAR)
             return found, 0.0 if self.crosses else max(met.own - away, length / 2)
+        if "ttc" in self.cue and self.first in ON_ITS_WAY:  # it comes over the line at that time
+            over = met.own - float(self.world.profile_of(self.road).width(met.car)) / 2 - length / 2
+            found = found._replace(own=over + self.v * self.cue["ttc"])
         found = found._replace(own=found.own - self.copy * (length + STANDS + BEHIND * self.v))
         eta = (found.car - car.s - car.length / 2) / max(car.v, 1.0)
         return found, found.own - self.v * eta
@@ -662,7 +667,8 @@ class Act:
         """Returns with which acceleration it starts to move if it will have this speed."""
         if self.kind in PULL:
             return PULL[self.kind]
-        return max(speed**2 / 2 / (RUNNING_PATH if speed > RUNS else PATH), 0.1)
+        pull = speed**2 / 2 / (RUNNING_PATH if speed > RUNS else PATH)
+        return min(max(pull, 0.1), QUICKEST)
 
     def _phases(self, deed: Deed) -> list[Phase]:  # noqa: C901 - a table
         """Returns what an action consists of, seen from where it begins."""

@@ -261,7 +261,8 @@ def _other(found: Sequence[ScoredPlan[Brief]], brief: Brief, text: SlottedText) 
     said = brief.model_copy(update=free)
     for draft in found:
         if draft.asks is not None and is_possible(draft.asks, *ANY_WORLD):
-            other = with_named(with_diameters(draft.asks, draft.tokens, text)).model_copy(update=free)
+            other = with_named(with_diameters(draft.asks, draft.tokens, text))
+            other = with_told(other, brief.words).model_copy(update=free)
             if other != said:
                 return plan(other)
     return ""

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from roadgpt.brief.languages import word_set
 
-HOURS = "one two three four five six seven eight nine ten eleven twelve".split()
+HOURS = ["one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"]
 NOON = word_set("noon")
 TIME = re.compile(
     r"(?<![\d.,:/-])(?P<hour>[01]?\d|2[0-3])(?P<between>[:.h])(?P<minute>[0-5]\d)(?![\d:./]|,\d)"

@@ -11,6 +11,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import SCENE, read_plan
 from roadgpt.brief.readers.model.clock import told_time
+from roadgpt.brief.readers.model.number_words import plain
 from roadgpt.brief.readers.model.slots import NumberSlot, SlottedText
 from roadgpt.brief.readers.model.vocabulary import WISHES, plan_of
 from roadgpt.brief.scene import Land, Scene
@@ -136,19 +137,25 @@ def with_named(brief: Brief) -> Brief:
 
 
 def with_told(brief: Brief, words: str) -> Brief:
-    """Returns a Brief whose scene has what the networks do not write: the time of day that the words tell,
-    which is at night if it is in the small hours, and parked cars on both sides where they say so."""
+    """Returns a Brief whose scene has what the networks leave out: the time of day that the words tell, night
+    by its name or in the small hours, and parked cars on both sides where the words say so."""
     scene = brief.scene
     if scene == Scene():
         return brief
     fields: dict[str, Any] = {}
     if len(scene.parked) == 1 and ON_BOTH_SIDES.search(words):
         fields["parked"] = ("left", "right")
-    if clock := told_time(words):
+    clock, said = told_time(words), {plain(word) for word in re.findall(r"\w+", words)}
+    if clock:
         fields["clock"] = clock
-        if scene.light is None and clock[:2] in SMALL_HOURS:
-            fields["light"] = "night"
-    return brief.model_copy(update={"scene": scene.model_copy(update=fields)}) if fields else brief
+    is_night = not NAMES["night"].isdisjoint(said) or (clock or "")[:2] in SMALL_HOURS
+    if is_night and scene.light is None:
+        fields["light"] = "night"
+    if not fields:
+        return brief
+    named = NAMES["night"] if "light" in fields else ()
+    unused = tuple(word for word in brief.unused if plain(word) not in named)
+    return brief.model_copy(update={"scene": scene.model_copy(update=fields), "unused": unused})
 
 
 def with_origin(brief: Brief, text: SlottedText) -> Brief:
