@@ -39,14 +39,14 @@ def test_others_and_weather_are_told_and_driven() -> None:
 
 def test_a_scene_is_in_the_run_and_in_the_command_that_repeats_it() -> None:
     made = roadgpt(
-        "run", "--plan", PLAN, "--scene", "light;wet", "--no-drive", "--no-plot", "--out", "out", "-q"
+        "run", "--plan", PLAN, "--scene", "night;wet", "--no-drive", "--no-plot", "--out", "out", "-q"
     )
     assert made.exit_code == 0, made.output
     run = read_run(Path("out/runs/0001"))
-    assert run.world.scene == read_scene("light; wet")
+    assert run.world.scene == read_scene("night; wet")
     assert run.world.site.friction == 0.6
     assert (
-        json.loads(Path("out/runs/0001/run.json").read_bytes())["request"]["world"]["scene"] == "light; wet"
+        json.loads(Path("out/runs/0001/run.json").read_bytes())["request"]["world"]["scene"] == "night; wet"
     )
     plain = roadgpt(
         "run", "--plan", PLAN, "--no-drive", "--no-plot", "--out", "plain", "-q", "--seed", run.request.seed

@@ -12,6 +12,7 @@ from math import exp, log, log1p
 from typing import Any, Generic, TypeVar
 
 from roadgpt.brief.feasible import is_possible
+from roadgpt.brief.languages import TABLE
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.before import TOLD_ON_ROUTES, may_tell_a_route
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
@@ -47,6 +48,8 @@ SHORT = 12
 a scene."""
 LONG = 40
 """The largest number of words of a text in which all words are looked at that its plan does not depend on."""
+TOLD_BY = [(frozenset(names.split()), frozenset(words.split())) for names, words in TABLE["told_by"].items()]
+"""Words that are used by a plan that has one of some tokens."""
 Asked = TypeVar("Asked")
 
 
@@ -230,11 +233,13 @@ class Trained:
     def _idle(self, text: SlottedText, tokens: Sequence[str]) -> frozenset[int]:
         """Returns the places of the words that the plan does not depend on.
 
-        If two words mean the same ("uphill, climbing all the way"), each of them can be left out, but not
+        A word for what the plan has is used (``TOLD_BY``). If two words mean the same ("uphill, climbing all the way"), each of them can be left out, but not
         both. If the plan changes when all such words are left out, a word that alone restores the plan counts
         as used. A word in letters of another script than Latin is in none of the languages that are read: it
         never counts as used, even if the plan happens to be less likely without it."""
+        told = {*tokens}.union(*(words for names, words in TOLD_BY if not names.isdisjoint(tokens)))
         content = [place for place, word in enumerate(text.words) if _is_content(word, self.fillers)]
+        content = [place for place in content if text.words[place].text not in told]
         foreign = frozenset(place for place in content if not _is_latin(text.words[place].text))
         tried = [place for place in content if place not in foreign][:MOST_WORDS]
         kept = self._are_kept(text, tokens, [{place} for place in tried])
