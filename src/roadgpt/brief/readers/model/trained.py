@@ -233,10 +233,11 @@ class Trained:
     def _idle(self, text: SlottedText, tokens: Sequence[str]) -> frozenset[int]:
         """Returns the places of the words that the plan does not depend on.
 
-        A word for what the plan has is used (``TOLD_BY``). If two words mean the same ("uphill, climbing all the way"), each of them can be left out, but not
-        both. If the plan changes when all such words are left out, a word that alone restores the plan counts
-        as used. A word in letters of another script than Latin is in none of the languages that are read: it
-        never counts as used, even if the plan happens to be less likely without it."""
+        A word for what the plan has is used (``TOLD_BY``). If two words mean the same ("uphill, climbing all
+        the way"), each of them can be left out, but not both. If the plan changes when all such words are
+        left out, a word that alone restores the plan counts as used. A word in letters of another script than
+        Latin is in none of the languages that are read: it never counts as used, even if the plan happens to
+        be less likely without it."""
         told = {*tokens}.union(*(words for names, words in TOLD_BY if not names.isdisjoint(tokens)))
         content = [place for place, word in enumerate(text.words) if _is_content(word, self.fillers)]
         content = [place for place in content if text.words[place].text not in told]
