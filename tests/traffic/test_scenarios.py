@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from shapely import LineString, Point, Polygon
 
 from outside_judge import SHARED
 from roadgpt.brief.model import mirrored
@@ -23,6 +24,7 @@ from roadgpt.errors import UsageError
 from roadgpt.road import World
 from roadgpt.run import Run, Setup, perform
 from roadgpt.run.exporting import export
+from roadgpt.traffic.actor import SIZES, corners
 
 HERE = Path(__file__).parent
 CATALOGUE: list[dict[str, Any]] = json.loads((HERE / "catalogue.json").read_text())["scenarios"]
@@ -243,3 +245,24 @@ def test_slippery_places_let_the_tested_car_slip_there_and_nowhere_else() -> Non
     world = World().changed(scene=scenario("leaderboard:control_loss").onto(Scene()))
     at = [world.friction_at(s) for s in (13.9, 14.0, 23.9, 24.1, 48.0, 80.0, 90.0)]
     assert at == [1.0, 0.3, 0.3, 1.0, 0.3, 0.3, 1.0]
+
+
+@pytest.mark.parametrize("ttc", [2.0, 3.0])
+def test_who_turns_across_at_a_time_to_collision_comes_over_the_line_then(ttc: float) -> None:
+    plan = f"straight 200 // crossroads straight && ego v=50; car junction opposite: turn_across ttc={ttc:g}"
+    run = perform(plan, 1, World().changed(lane_width=3.5), Setup(driver="robot", reader="plan"))
+    assert run.road is not None
+    assert run.drive is not None
+    assert run.drive.others is not None
+    s = np.arange(0.0, run.road.length, 0.5)
+    path = LineString(run.road.at(s, run.world.profile_of(run.road).middle(s))[:, :2])
+    lane = path.buffer(3.5 / 2, cap_style="flat")
+    tracks = run.drive.others
+    there = ~np.isnan(tracks.states[:, 0, 0])
+    boxes = (corners(state, tracks.actors[0].size) for state in tracks.states[there, 0])
+    over = next(n for n, box in enumerate(boxes) if Polygon(box).intersects(lane))
+    n = int(np.searchsorted(run.drive["time"], tracks.time[there][over]))
+    x, y = run.drive["x"][n], run.drive["y"][n]
+    crossing = LineString(tracks.states[there, 0, :2]).intersection(path)
+    way = path.project(crossing) - path.project(Point(x, y)) - SIZES["car"].length / 2
+    assert way / run.drive["speed"][n] == pytest.approx(ttc, abs=0.5)

@@ -372,7 +372,10 @@ class Act:
             away = self.n.get("away", NEAR)
             return found, 0.0 if self.crosses else max(met.own - away, length / 2)
         if "ttc" in self.cue and self.first in ON_ITS_WAY:  # it comes over the line at that time
-            over = met.own - float(self.world.profile_of(self.road).width(met.car)) / 2 - length / 2
+            half = float(self.world.profile_of(self.road).width(self.path.to_road(met.car))) / 2
+            turned = self.path.pose(met.car)[3] - self.way.pose(met.own)[3]
+            corner = (half + width / 2 * abs(math.cos(turned))) / max(abs(math.sin(turned)), 0.3)
+            over = met.own - corner - length / 2
             found = found._replace(own=over + self.v * self.cue["ttc"])
         found = found._replace(own=found.own - self.copy * (length + STANDS + BEHIND * self.v))
         eta = (found.car - car.s - car.length / 2) / max(car.v, 1.0)

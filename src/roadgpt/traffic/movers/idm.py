@@ -102,7 +102,7 @@ class IdmMover:
             begin, end = self.lanes.usable[n]
             if self.lanes.junction[n] >= 0 or end - begin < 20.0 or self.lanes.ends[n]:
                 continue
-            count = int(self._rng.poisson((end - begin) * self._density[n]))
+            count = int((end - begin) * self._density[n] + self._rng.random())
             count = min(count, int((end - begin) / 15.0))
             if not count:
                 continue
