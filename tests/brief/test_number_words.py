@@ -98,3 +98,22 @@ def test_whatever_the_grammar_allows_is_a_brief(seed: int, values: list[float]) 
 def test_word_pieces_are_the_longest_that_fit() -> None:
     pieces = WordPieces(["[PAD]", "[UNK]", "[CLS]", "[SEP]", "hair", "##pin", "##p", "##in", "road"])
     assert pieces.encode(["hairpin", "road", "xyz"]) == [[2, 4, 5, 8, 1, 3]]
+
+
+@pytest.mark.parametrize(
+    ("words", "unit", "value"),
+    [
+        ("at 20 metres per second", "kmh", 72),
+        ("mit 25 Meter pro Sekunde", "kmh", 90),
+        ("à 10 mètres par seconde", "kmh", 36),
+        ("a 20 metros por segundo", "kmh", 72),
+        ("a 15 metri al secondo", "kmh", 54),
+        ("mit 80 Kilometer pro Stunde", "kmh", 80),
+        ("with 6 metres per second squared", "mps2", 6),
+        ("with 2 meters per second per second", "mps2", 2),
+        ("turns of 40 m per side", "metres", 40),
+    ],
+)
+def test_speeds_in_words_are_no_lengths(words: str, unit: str, value: float) -> None:
+    (slot,) = slotted(words).slots
+    assert (slot.unit, slot.value) == (unit, value)
