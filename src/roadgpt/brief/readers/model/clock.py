@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from roadgpt.brief.languages import word_set
 
 HOURS = ["one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"]
-NOON = word_set("noon")
 TIME = re.compile(
     r"(?<![\d.,:/-])(?P<hour>[01]?\d|2[0-3])(?P<between>[:.h])(?P<minute>[0-5]\d)(?![\d:./]|,\d)"
     r"(?P<sign>\s*(?:hrs|hours|uhr|o'clock|h)\b)?(?:\s*(?P<half>[ap])\.?\s?m\b)?"
@@ -41,7 +40,7 @@ def _times(text: str) -> Iterator[str]:
             yield _as_time(hour, 0, "a" if at["part"] == "morning" else "p", "")
         else:
             yield _as_time(int(at["hour"] or at["uhr"]), 0, at["half"], text[at.end() :])
-    if NOON.intersection(re.findall(r"\w+", text)):
+    if word_set("noon").intersection(re.findall(r"\w+", text)):
         yield "12:00"
 
 

@@ -51,7 +51,6 @@ IN_MILES, SPEEDING, SLOWING = word_set("in_miles"), word_set("speeding"), word_s
 VAGUELY, OF_SPEED, BEHIND_SPEED = word_set("vaguely"), word_set("of_speed"), word_set("behind_speed")
 USUAL_SPEEDS = range(5, 121)
 """Numbers without a unit that may be miles per hour."""
-OVER = ("/", "per", "pro", "par", "por", "al")
 SQUARED = (["s²"], ["s", "2"], ["s", "^", "2"], ["s", "/", "s"], ["sec", "2"], ["sec", "^", "2"])
 SQUARED += (["second", "squared"], ["second", "per", "second"])
 MOST_G = 1.5
@@ -90,7 +89,7 @@ def unit_at(tokens: Sequence[str], at: int) -> tuple[Unit, float, int] | None:
         if found:
             unit, factor = found
             over, time, *more = [*tokens[at + size : at + size + 4], "", "", "", ""][:4]
-            if unit == "metres" and over in OVER:
+            if unit == "metres" and over in ("/", "per", "pro", "par", "por", "al"):
                 squared = next((each for each in SQUARED if [time, *more][: len(each)] == each), None)
                 if squared:
                     return "mps2", factor, size + 1 + len(squared)
