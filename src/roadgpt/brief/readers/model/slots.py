@@ -51,8 +51,8 @@ IN_MILES, SPEEDING, SLOWING = word_set("in_miles"), word_set("speeding"), word_s
 VAGUELY, OF_SPEED, BEHIND_SPEED = word_set("vaguely"), word_set("of_speed"), word_set("behind_speed")
 USUAL_SPEEDS = range(5, 121)
 """Numbers without a unit that may be miles per hour."""
-SQUARED = (["s²"], ["s", "2"], ["s", "^", "2"], ["s", "/", "s"], ["sec", "2"], ["sec", "^", "2"])
-SQUARED += (["second", "squared"], ["second", "per", "second"])
+SQUARED = [each.split() for each in ("s²", "s 2", "s ^ 2", "s / s", "sec 2", "sec ^ 2")]
+SQUARED += [["second", "squared"], ["second", "per", "second"]]
 MOST_G = 1.5
 """The largest number of which "g" is an acceleration; "50 g 3" is 50 m and a left turn of a rally."""
 RADIUS, LEADING_TO = word_set("radius"), word_set("leading_to")
