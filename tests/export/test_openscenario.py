@@ -163,6 +163,7 @@ CONDITIONS = {
     "night": {"RoadCondition", "TimeOfDay", "Weather", "Sun"},
     "low_sun": {"RoadCondition", "Weather", "Sun"},
     "fog 60; rain 5; night": {"RoadCondition", "TimeOfDay", "Weather", "Sun", "Fog", "Precipitation"},
+    "clock 14:15": {"RoadCondition", "TimeOfDay"},
 }
 
 
@@ -181,6 +182,9 @@ def test_the_environment_is_that_of_the_scene_and_asams_checker_agrees(tmp_path:
         assert "Fog" not in values or values["Fog"] == {"visualRange": "60"}
         rain = {"precipitationType": "rain", "precipitationIntensity": "5"}
         assert "Precipitation" not in values or values["Precipitation"] == rain
+        if "TimeOfDay" in values:
+            hour = "14:15" if text == "clock 14:15" else "00:00"
+            assert values["TimeOfDay"]["dateTime"].endswith(f"T{hour}:00")
         if "Sun" in values:
             azimuth, up = (float(values["Sun"][name]) for name in ("azimuth", "elevation"))
             assert ("TimeOfDay" in values) == ("night" in text) == (up < math.radians(-18))  # astronomical
