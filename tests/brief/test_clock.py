@@ -52,6 +52,8 @@ def test_night_and_both_sides_are_read_by_their_words() -> None:
     read = READER.read("Di notte su strada ghiacciata in discesa, un'auto ferma dopo la curva a destra.")
     assert read.scene.light == "night"
     assert not {"notte", "Notte"} & {*read.unused}
+    denied = "a car ahead brakes on a straight country road in good daylight, no night, 40 km/h"
+    assert READER.read(denied).scene.light is None
     street = READER.read("a street with cars parked on both sides, a child runs out from the left")
     assert street.scene.parked == ("left", "right")
 

@@ -49,10 +49,8 @@ EASY = 4.0  # m/s^2, with which the tested car can stop before who stands or is 
 TURNING = 20.0 / 3.6  # m/s, of vehicles that turn at a junction, at most
 CUT_IN = 10.0  # m, the gap at which one cuts in
 PASSED = 10.0  # m, the gap at which one has overtaken
-LANE, BESIDE_AFTER = (
-    3.5,
-    0.6,
-)  # m from lane to lane, and the share of a change after which one is clear of a car
+LANE = 3.5  # m from lane to lane
+CLEAR = 0.6  # share of a change of lanes after which one is clear of a car in the lane that is left
 HEADWAY = 2.0  # s, of who is ahead
 BEHIND = 1.5  # s, of who is behind, and of several alike one behind another
 INTO = 1.0  # s of headway with which one turns in or merges ahead of the tested car
@@ -437,12 +435,8 @@ class Act:
             if self.first == "cut_in":
                 at -= rate * self._until_over_line(self.deeds[0], car.s, self._place(self.where, car.s))
         elif self.first == "overtake" and self.forward > 0:
-            clears = BESIDE_AFTER * _slides(self.deeds[0], LANE)
-            at = (
-                max(car.v, max(v - car.v, 0.0) * clears + STANDS)
-                if self.where == "behind"
-                else -2 * self.half - car.v
-            )
+            closes = max(v - car.v, 0.0) * CLEAR * _slides(self.deeds[0], LANE)
+            at = max(car.v, closes + STANDS) if self.where == "behind" else -2 * self.half - car.v
         elif self.where == "behind":
             return BEHIND * self.v
         elif self.where in ("lane", "far"):
@@ -618,7 +612,7 @@ class Act:
 
     def _until(self, deed: Deed) -> float:
         """Returns in how many seconds a gap, a headway or a time to collision is reached, from either side;
-        if it is there from the begin on, the action begins after ROLL. Where the scene leaves open where
+        if it is there from the begin on, the action begins after ``rolls``. Where the scene leaves open where
         somebody is at first who cuts in or crosses, the gap is that when it comes over the line into the
         tested car's lane."""
         n, (gap, rate) = deed.n, self.gap()

@@ -3,6 +3,7 @@ and where one comes from. In the tokens of a plan it follows the road; here both
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import pairwise
 from typing import Any, get_args
 
 from roadgpt.brief.feasible import is_possible
@@ -102,6 +103,7 @@ def things_in(brief: Brief) -> frozenset[str]:
 
 
 SMALL_HOURS = ("22", "23", "00", "01", "02", "03", "04")
+DENIED = word_set("denying")
 ON_BOTH_SIDES = pattern_of("both_sides", flags=re.IGNORECASE)
 
 
@@ -145,14 +147,12 @@ def with_told(brief: Brief, words: str) -> Brief:
     fields: dict[str, Any] = {}
     if len(scene.parked) == 1 and ON_BOTH_SIDES.search(words):
         fields["parked"] = ("left", "right")
-    clock, said = told_time(words), {plain(word) for word in re.findall(r"\w+", words)}
+    clock, said = told_time(words), ["", *map(plain, re.findall(r"\w+", words))]
     if clock:
         fields["clock"] = clock
-    is_night = not NAMES["night"].isdisjoint(said) or (clock or "")[:2] in SMALL_HOURS
-    if is_night and scene.light is None:
+    is_named = any(word in NAMES["night"] and before not in DENIED for before, word in pairwise(said))
+    if scene.light is None and (is_named or (clock or "")[:2] in SMALL_HOURS):
         fields["light"] = "night"
-    if not fields:
-        return brief
     named = NAMES["night"] if "light" in fields else ()
     unused = tuple(word for word in brief.unused if plain(word) not in named)
     return brief.model_copy(update={"scene": scene.model_copy(update=fields), "unused": unused})
