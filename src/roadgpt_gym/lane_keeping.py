@@ -125,7 +125,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         self._sensor = None if self._camera is None else CameraSensor(self._camera, road, self._world)
         self._scene: Any = None
         self._step, self._row, self._gain = 0, self._vehicle.see(), 0.0
-        self._ended = self._monitor.ended(self._vehicle.row, 0.0, self._vehicle.has_fallen)
+        self._ended = self._monitor.ended(self._vehicle.row, 0.0, self._vehicle.mishap)
         return self._seen(), {**self._info(), "understood": sentence(brief)}
 
     def _drawn(self, brief: Any) -> Road:
@@ -155,7 +155,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
             self._vehicle.move(turn * ETK_LIKE.max_steer_angle, max(pedal, 0.0), max(-pedal, 0.0))
             self._step += 1
             self._ended = self._monitor.ended(
-                self._vehicle.row, self._step * CONTROL, self._vehicle.has_fallen
+                self._vehicle.row, self._step * CONTROL, self._vehicle.mishap
             )
         self._row = row = self._vehicle.see()
         aside = abs(row["t"] - float(self._profile.middle(row["s"])))

@@ -191,4 +191,4 @@ def test_the_ground_ends_at_the_rim_of_its_own_side(world: World, left: float, r
         car.put(50.0, t)
         for _ in range(150):
             car.move(0.0, 0.0, 1.0)
-        assert (not car.has_fallen and abs(car.see()["roll"]) < 0.02) == stays, t
+        assert (not car.mishap and abs(car.see()["roll"]) < 0.02) == stays, t

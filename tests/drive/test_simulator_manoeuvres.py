@@ -83,7 +83,7 @@ def test_lateral_limit():
         seen = cruise(vehicle, 80, 0.014 * step * 0.02)
         most = max(most, seen["yaw_rate"] * seen["vx"] / G)
     assert 0.85 <= most <= 0.95
-    assert not vehicle.has_fallen
+    assert not vehicle.mishap
 
 
 def test_understeer_and_roll_gradients():

@@ -50,6 +50,7 @@ from roadgpt.run.model import permissions
 from roadgpt.run.store import connected
 from roadgpt.run.versions import Versions, joined, still
 from roadgpt.verdict import Verdict, judge
+from roadgpt.verdict.verdict import DEPARTURES
 
 if TYPE_CHECKING:
     from roadgpt.campaign.plan import Plan
@@ -652,7 +653,7 @@ def _verdict_of(road: Road, drive: Drive, cell: Cell, result: Result) -> Verdict
     if result.outcome not in ("PASS", "FAIL", "UNAVOIDABLE") or result.margin is None:
         return None
     step = len(drive) - 1
-    if result.at_s is not None and result.cause in ("out of lane", "fell"):
+    if result.at_s is not None and result.cause in DEPARTURES:
         step = int(np.argmin(np.abs(drive["s"] - result.at_s)))
     world = cell.request.world.in_weather_of(drive.seed)
     judged = judge(road, drive, world, (step, result.cause))

@@ -18,7 +18,10 @@ if TYPE_CHECKING:
     from roadgpt.traffic import Tracks
 
 FloatArray = NDArray[np.float64]
-Ended = Literal["goal", "out_of_lane", "fell", "stuck", "timeout", "collision"]
+Mishap = Literal["fell", "rolled", "crashed", "sank"]
+"""What ends a drive beside the road: the car falls off a road that floats or off a bridge, rolls over, is stopped
+by a slope, or drives into water."""
+Ended = Literal["goal", "out_of_lane", Mishap, "stuck", "timeout", "collision"]
 COLUMNS = {
     "time": "s, since the start",
     "x": "m, centre of gravity",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roadgpt.drive.drive import COLUMNS, Box, Ended, FloatArray
+from roadgpt.drive.drive import COLUMNS, Box, Ended, FloatArray, Mishap
 from roadgpt.drive.lane_position import POSE, MarkingMonitor
 from roadgpt.errors import SimulationError
 from roadgpt.road.road import GOAL, START
@@ -55,7 +55,7 @@ class DriveMonitor:
         self._end = np.asarray(road.at(road.length, right if profile.left_hand else left)).tolist()
         self._since, self._from = 0.0, (math.nan, math.nan)
 
-    def ended(self, row: FloatArray, time: float, has_fallen: bool) -> Ended | None:
+    def ended(self, row: FloatArray, time: float, mishap: Mishap | None) -> Ended | None:
         """Returns how the drive ended at this step, or None if the drive continues.
 
         Call this method exactly once for every control step, from the first on. ``row`` is the state of the
@@ -76,8 +76,8 @@ class DriveMonitor:
             return "stuck"
         if self.is_out(outside, None if self._tyres is None else row[_POSE]):
             return "out_of_lane"
-        if has_fallen:
-            return "fell"
+        if mishap:
+            return mishap
         return "timeout" if time >= self.limit - ROUNDING else None
 
     def touch(self, time: float) -> None:

@@ -22,11 +22,11 @@ import numpy as np
 
 from roadgpt import plugins
 from roadgpt.errors import ExportError, UsageError
-from roadgpt.export.edges import fold
 from roadgpt.export.ego import Others, Poses
 from roadgpt.geometry import CubicProfile
 from roadgpt.network import network_of, only_road
 from roadgpt.road import Road, World
+from roadgpt.road.edges import fold
 
 __all__ = ["Exporter", "Others", "Poses", "doubts", "exporter_of", "save"]
 

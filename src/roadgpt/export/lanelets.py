@@ -9,12 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from roadgpt.export.edges import line, stations
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Arm, Junction, Leg, Network, network_of
 from roadgpt.network.lanes import lanes_of
 from roadgpt.road import Profile, Road, World
+from roadgpt.road.edges import line, stations
 from roadgpt.road.profile import Marking
 
 LENGTH = 50.0  # m, approximate length of a section

@@ -7,24 +7,14 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Self
 
-import numpy as np
-
 from roadgpt.errors import ExportError
-from roadgpt.geometry.curve import Array
+from roadgpt.road.edges import NOT_FINITE
 
-NOT_FINITE = "the road has a number that is not finite; check it before it is exported"
 DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>'
 _ESCAPES = str.maketrans(
     {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\t": "&#9;", "\r": "&#13;"}
 )
 _UNUSUAL = re.compile(r'[^ -~]|[&<>"]').search  # finds characters that may need an escape
-
-
-def finite(values: Array) -> Array:
-    """Returns the values unchanged. Raises ExportError if one is not finite, which no format can hold."""
-    if not np.isfinite(values).all():
-        raise ExportError(NOT_FINITE)
-    return values
 
 
 Value = str | float | int

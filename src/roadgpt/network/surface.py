@@ -12,13 +12,16 @@ from numpy.typing import NDArray
 
 from roadgpt.brief.junctions import RAMPS
 from roadgpt.geometry.curve import Array
+from roadgpt.ground.ground import Pavement
 from roadgpt.network.network import Junction, Kind, Network, NetworkRoad, RoadEnd
-from roadgpt.network.paved import NEAR, Area, paved_by, polygons_in
+from roadgpt.network.paved import GRID, NEAR, Area, paved_by, polygons_in
 from roadgpt.road import Road
+from roadgpt.road.edges import line, stations
 
 if TYPE_CHECKING:
     from shapely import Polygon
 
+LONGEST = 4.0  # m between the points of a road's rim
 ROUND = 8  # segments in a quarter of a circle, where a shoulder rounds a corner
 GREEN = 0.1  # least share of a hole in the paved area that shoulders leave free, so that grass grows there
 
@@ -70,6 +73,54 @@ class NetworkSurface:
         """The largest distance in metres from the reference line of a road in ``roads`` to the outer edge of
         its shoulder, an upper bound; roads with a wider ``shoulder`` do not count."""
         return max(each.profile.reach for each in self.roads if each.shoulder <= self.shoulder)
+
+
+def stations_of(member: NetworkRoad) -> Array:
+    """Returns the stations ``(n,)`` in metres at which the surface of a road has points: close enough for
+    all lines beside it, and at most ``LONGEST`` apart."""
+    s = stations(member.road, member.profile.reach)
+    parts = np.maximum(1, np.ceil(np.diff(s) / LONGEST)).astype(int)
+    steps = np.repeat(np.diff(s) / parts, parts)
+    return np.asarray(np.minimum(np.r_[0.0, np.cumsum(steps)], member.road.length))
+
+
+def pavement_of(network: Network) -> Pavement:
+    """Returns the surface of all roads and junctions of a network with their shoulders, which the ground
+    meets."""
+    import shapely
+    from shapely.geometry.polygon import orient
+
+    parts = NetworkSurface.of(network)
+    inner, outer, shapes = [], [], []
+    for member in parts.roads:
+        s, profile = stations_of(member), member.profile
+        lines = [line(member.road, s, t) for t in (*profile.edges(s), *profile.rims(s))]
+        left, right, left_rim, right_rim = lines
+        inner.append(_quads(right, left))
+        outer += [_quads(left, left_rim), _quads(right_rim, right)]
+        shapes.append(shapely.Polygon(np.concatenate([right_rim, left_rim[::-1]])[:, :2]))
+    for area in parts.areas:
+        for part in (area.paved, *area.kerbed, *area.green, area.shoulder):
+            flat, corners = triangulated(part)
+            level = np.column_stack([flat, np.full(len(flat), area.height)])
+            (inner if part is area.paved else outer).append(level[corners])
+        shapes += [area.paved, area.shoulder, *area.kerbed, *area.green]
+    if len(shapes) == 1 and shapes[0].is_valid:
+        whole = shapes[0]
+    else:
+        whole = shapely.set_precision(shapely.union_all(shapely.make_valid(np.array(shapes, object))), GRID)
+    rings = [
+        np.asarray(ring.coords, float)[:-1, :2]
+        for part in polygons_in(whole)
+        for ring in (orient(part).exterior, *orient(part).interiors)
+    ]
+    return Pavement.of(np.concatenate([*inner, *outer]), rings)
+
+
+def _quads(right: Array, left: Array) -> Array:
+    """Returns the triangles ``(2n - 2, 3, 3)`` between two lines ``(n, 3)``."""
+    a, b, c, d = right[:-1], right[1:], left[1:], left[:-1]
+    return np.stack([a, b, c, a, c, d], axis=1).reshape(-1, 3, 3)
 
 
 def free_ends(network: Network, road: NetworkRoad) -> tuple[bool, bool]:

@@ -90,6 +90,9 @@ SIZE, STEP = 9.5, 0.18  # points; inches from line to line
 WORDS = {
     "out of lane": "left its lane",
     "fell": "fell off the road",
+    "rolled": "rolled over",
+    "crashed": "crashed into the slope",
+    "sank": "drove into water",
     "stuck": "got stuck",
     "timeout": "time ran out",
     "wrong turn": "took a wrong turn",

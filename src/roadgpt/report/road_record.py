@@ -21,11 +21,11 @@ from roadgpt.road import Road
 from roadgpt.run import Run
 from roadgpt.run.folder import finished, finished_run_in, slug, test_in
 from roadgpt.verdict import Verdict
+from roadgpt.verdict.verdict import DEPARTURES
 
 Array = NDArray[np.float64]
 
 MOST_COMPARED = 150  # roads of a part, each of which is compared with every other one
-DEPARTURES = ("out of lane", "fell")  # causes of failures by which the car left its lane
 LETTERS = 32  # of a description, in the name of its folder
 STRAIGHT = np.stack([np.linspace(0.0, 30.0, 31), np.zeros(31)], axis=1)
 """Points of a straight of 30 m. If there is no road, this straight is measured instead of the road, to learn

@@ -49,6 +49,7 @@ Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 FRICTIONS = (0.0, 2.0)  # the first is not reached
 SPEEDS = (5 / 3.6, 300 / 3.6)  # m/s, of speed limits in options and files
+LAND_KINDS = ("flat", "rolling", "hilly", "mountain")
 LANE_WIDTHS = (2.0, 10.0)  # m, of the driven lane in options and files
 STEEPEST = 0.12  # ratio, largest superelevation of bends
 OWN = {"lanes": "1+1", "lane_width_end": None, "centre_line": None, "bank": "none"}
@@ -73,6 +74,7 @@ FIELDS = {
     "max_grade": "limits",
     "z_floor": "site",
     "min_length": "limits",
+    "ground": "site",
 }
 """The fields of a World in the order in which files list them, each with the part that it belongs to."""
 KEYS = {"shoulder": "verge"}
@@ -131,6 +133,15 @@ def bank_in(value: str | float, most: float = STEEPEST, unit: str = "a ratio") -
     if value in ("none", "auto") or (isinstance(value, float) and 0 <= value <= most):
         return value
     raise ValueError(f"give 'none', 'auto' or {unit} from 0 to {most:g}")
+
+
+def ground_in(text: str) -> str:
+    """Returns a kind of land such as "hilly", or "hilly:3" with a seed; raises ValueError if there is no such
+    kind."""
+    kind, colon, seed = text.partition(":")
+    if text and (kind not in LAND_KINDS or (colon and not re.fullmatch(r"\d{1,9}", seed))):
+        raise ValueError(f"give {', '.join(LAND_KINDS)}, with a seed as in hilly:3")
+    return text
 
 
 Lanes = Annotated[str, AfterValidator(lanes_in)]
@@ -195,6 +206,16 @@ class Site(BaseModel):
     ``World.on_surface_of``."""
     z_floor: float = -28.0
     """Height in metres of the flat ground of the simulator's map."""
+    ground: Annotated[str, AfterValidator(ground_in)] = Field(
+        "", description="The land that the road lies in: flat, rolling, hilly or mountain, with a seed as in "
+        "hilly:3. [default: none to drive on]",
+    )  # fmt: skip
+
+    @property
+    def made_ground(self) -> tuple[Any, int] | None:
+        """The kind and the seed of the land; None if none is asked for."""
+        kind, _, seed = self.ground.partition(":")
+        return (kind, int(seed or 0)) if kind else None
 
 
 class CrossSection(BaseModel):
@@ -352,7 +373,7 @@ class World(BaseModel):
 
     @model_serializer
     def _to_file(self) -> dict[str, Any]:
-        usual = OWN | {"scene": ""}
+        usual = OWN | {"scene": "", "ground": ""}
         values = self.values().items()
         return {KEYS.get(name, name): value for name, value in values if usual.get(name, self) != value}
 
@@ -409,6 +430,11 @@ class World(BaseModel):
     def given_map(self) -> float | None:
         """The side of the map in metres, if one was given; None if it is the usual one."""
         return self.site.map_size if "map_size" in self.site.model_fields_set else None
+
+    @property
+    def has_ground(self) -> bool:
+        """Whether a car that leaves the road drives on over land: where land was asked for."""
+        return bool(self.site.ground or self.scene.landscape)
 
     @property
     def first_speed(self) -> float:

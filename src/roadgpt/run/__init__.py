@@ -65,6 +65,9 @@ REFUSED = "refused: "  # what the description of a test begins with whose scene 
 WENT_ON = {
     "goal": "then came to the goal",
     "fell": "then fell",
+    "rolled": "then rolled over beside the road",
+    "crashed": "then crashed into the slope",
+    "sank": "then drove into water",
     "stuck": "then got stuck",
     "timeout": "then ran out of time",
 }

@@ -17,7 +17,7 @@ AMBIENT, DIRECT = 0.42, 0.80
 """Brightness of the light from the sky, and of the light from the sun, each on a surface that fully faces
 it."""
 CONCRETE, PAINT, GLASS, TRIM, TYRE, RIM, GAP, TAIL, HEAD, PLATE, HIGH = range(PLAIN, PLAIN + 11)
-WHITE, RED, YELLOW, GREEN, BLACK, DIM_RED, DIM_YELLOW = range(PLAIN + 11, PLAIN + 18)
+WHITE, RED, YELLOW, GREEN, BLACK, DIM_RED, DIM_YELLOW, WATER = range(PLAIN + 11, PLAIN + 19)
 _COLOURS = {
     CONCRETE: (158, 154, 148),
     PAINT: (36, 92, 165),
@@ -37,6 +37,7 @@ _COLOURS = {
     BLACK: (36, 38, 40),
     DIM_RED: (74, 22, 24),
     DIM_YELLOW: (82, 66, 22),
+    WATER: (74, 108, 128),
 }
 _LIT = {GREEN: (0.02, 0.5, 0.16)}  # the light that a traffic light shows
 GLOSS = {PAINT: 1.0, GLASS: 1.0, TAIL: 0.6, HEAD: 0.9, RIM: 0.5, TRIM: 0.15}

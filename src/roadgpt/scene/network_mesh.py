@@ -1,5 +1,5 @@
-"""Builds the meshes of roads and networks: carriageways and shoulders as one surface, embankments, posts,
-level junctions, islands, lines, signs, and the land around them.
+"""Builds the meshes of roads and networks: carriageways and shoulders as one surface, posts, level junctions,
+islands, lines, signs, and the land around them.
 
 The colours of asphalt and shoulders depend on a station s, an offset t, and the offsets of lane boundaries
 at this station. All roads of a network lie one after another on one axis of stations. The last two stretches
@@ -9,23 +9,30 @@ second, the carriageway ends at t = 0."""
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache
 from itertools import pairwise
 from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
-from roadgpt.export.edges import FOOT as BANK_FOOT
-from roadgpt.export.edges import OUTSIDE, Embankment, bank_from, embankments, line, normals, stations
 from roadgpt.geometry.curve import Array
+from roadgpt.ground.ground import Ground
+from roadgpt.ground.mesh import GroundMesh, mesh_of, water_of
+from roadgpt.ground.relief import smooth
 from roadgpt.network import Network, NetworkRoad, RoadEnd, network_of, only_road
 from roadgpt.network.markings import JunctionSign, arrows, between_crosswalks, signs, strokes
 from roadgpt.network.paved import Area
-from roadgpt.network.surface import ROUND, JunctionSurface, NetworkSurface, free_ends, polygons, triangulated
+from roadgpt.network.surface import (
+    ROUND,
+    JunctionSurface,
+    NetworkSurface,
+    polygons,
+    stations_of,
+    triangulated,
+)
 from roadgpt.road import Profile, Road, World
-from roadgpt.road.land import Land
+from roadgpt.road.edges import line, normals
 from roadgpt.road.profile import LINE as PAINTED
 from roadgpt.scene.light import (
     BLACK,
@@ -35,6 +42,7 @@ from roadgpt.scene.light import (
     GREEN,
     RED,
     RIM,
+    WATER,
     WHITE,
     YELLOW,
     daylight,
@@ -43,9 +51,8 @@ from roadgpt.scene.light import (
 from roadgpt.scene.mesh import GRASS, POST, ROAD, Patch, attributes, grid, joined
 from roadgpt.scene.shade import INSET, LINE, PERIOD, LaneBoundaries
 
-CELLS = 8  # cells along a side of a patch
-CHORD = 0.004  # m, greatest distance between a curve and its polyline
-LONGEST = 4.0  # m between stations, so that light and texture follow crests
+TILE = 64.0  # m, side of the squares that the land is cut into
+ROCK = (0.12, 0.3)  # 1 less the cosine of the slope: from where grass ends, and where all is rock
 BLOCK = 24  # steps from station to station in a patch
 THICK = 0.5  # m, thickness of a road that floats
 POST_EVERY, POST_WIDE, POST_HIGH = 25.0, 0.14, 1.0
@@ -67,47 +74,31 @@ COLOURS: dict[SignColour, int] = {
 }  # fmt: skip
 
 
-@dataclass(frozen=True, eq=False)
-class LitTerrain:
-    """The terrain with its brightness in the light of sun and sky."""
-
-    land: Land
-
-    @cached_property
-    def light(self) -> Array:
-        """The brightness (rows, columns) of the terrain, computed from its slope."""
-        land = self.land
-        slope_y, slope_x = np.gradient(ndimage.gaussian_filter(land.heights, 1.0), land.y, land.x)
-        normals = np.stack([-slope_x, -slope_y, np.ones_like(slope_x)], axis=-1)
-        return daylight(normals / np.linalg.norm(normals, axis=-1, keepdims=True))
-
-    def light_at(self, x: Array, y: Array) -> Array:
-        """Returns the brightness of the terrain at points (x, y)."""
-        return self.land.between(self.light, x, y)
-
-    def patches(self) -> list[Patch]:
-        """Returns the surface of the terrain as patches."""
-        land = self.land
-        x, y = np.meshgrid(land.x, land.y, indexing="ij")
-        points, values = np.stack([x, y, land.heights.T], axis=-1), attributes(0.0, 0.0, self.light.T)
-        rows, columns = land.heights.shape
-        blocks = [
-            (slice(i, i + CELLS + 1), slice(j, j + CELLS + 1))
-            for j in range(0, rows - 1, CELLS)
-            for i in range(0, columns - 1, CELLS)
-        ]
-        return [grid(points[block], values[block], GRASS) for block in blocks]
+def land_patches(ground: Ground) -> list[Patch]:
+    """Returns the surface of the ground and of its water. The first surface coordinate of the ground says how
+    much of it is rock, 0 to 1: all where it is steep."""
+    mesh, water = mesh_of(ground), water_of(ground)
+    up = mesh.normals
+    bare = smooth(1.0 - up[:, 2], *ROCK)
+    values = attributes(bare, 0.0, daylight(up))
+    out = _tiles(mesh, values, GRASS)
+    if len(water.triangles):
+        out += _tiles(water, attributes(0.0, 0.0, np.full(len(water.points), level_light())), WATER)
+    return out
 
 
-def stations_between(road: Road, rim: float) -> Array:
-    """Returns the stations ``(n,)`` in metres at which lines along the road need points.
-
-    The stations are at most ``LONGEST`` apart. Take a curve at most ``rim`` metres beside the centre
-    line: a polyline with points at these stations deviates from the curve by at most about ``CHORD``."""
-    s = stations(road, rim, CHORD)
-    parts = np.maximum(1, np.ceil(np.diff(s) / LONGEST)).astype(int)
-    steps = np.repeat(np.diff(s) / parts, parts)
-    return np.asarray(np.minimum(np.r_[0.0, np.cumsum(steps)], road.length))
+def _tiles(mesh: GroundMesh, values: Array, kind: int) -> list[Patch]:
+    """Returns the triangles of a mesh in patches of those that lie in the same square."""
+    middles = mesh.points[mesh.triangles, :2].mean(axis=1)
+    keys = np.floor(middles / TILE).astype(np.int64)
+    order = np.lexsort(keys.T)
+    cuts = np.flatnonzero(np.any(np.diff(keys[order], axis=0), axis=1)) + 1
+    out = []
+    for members in np.split(order, cuts):
+        used, triangles = np.unique(mesh.triangles[members], return_inverse=True)
+        kinds = np.full(len(members), kind, np.int64)
+        out.append(Patch(mesh.points[used], values[used], triangles.reshape(-1, 3), kinds))
+    return out
 
 
 def _blocks(rows: Array, values: Array, kind: int) -> list[Patch]:
@@ -149,21 +140,6 @@ def _upwards(road: Road, s: Array) -> Array:
         banked = np.cross(along, left)
         return np.asarray(banked / np.linalg.norm(banked, axis=-1, keepdims=True))
     return normals(road, s)
-
-
-def slope(bank: Embankment, terrain: LitTerrain) -> list[Patch]:
-    """Returns an embankment. Where the embankment is low, its foot is as bright as the land there, so that no
-    edge is visible."""
-    edge, foot, is_left = bank
-    rows = np.stack([edge, foot] if is_left else [foot, edge], axis=1)
-    along = np.gradient(edge, axis=0)
-    down = foot - edge
-    outward = np.cross(along, down) if is_left else np.cross(down, along)
-    outward /= np.maximum(np.linalg.norm(outward, axis=-1, keepdims=True), 1e-9)
-    own, met = daylight(outward), terrain.light_at(foot[:, 0], foot[:, 1])
-    at_foot = met + (own - met) * np.clip((edge[:, 2] - foot[:, 2] - BANK_FOOT - 1.5) / 4.0, 0.0, 1.0)
-    light = np.stack([np.full_like(own, level_light()), at_foot], axis=1)
-    return _blocks(rows, attributes(0.0, 0.0, light if is_left else light[:, ::-1]), GRASS)
 
 
 def slab(road: Road, profile: Profile, s: Array) -> list[Patch]:
@@ -269,22 +245,21 @@ def _has_broken_line_only(network: Network, member: NetworkRoad) -> bool:
     return [marking for marking, _ in inner] == ["broken"] and abs(middle[0]) < LEAST_OFFSET
 
 
-def patches_of(road: Road, world: World, land: Land) -> tuple[list[Patch], LaneBoundaries]:
+def patches_of(road: Road, world: World, ground: Ground) -> tuple[list[Patch], LaneBoundaries]:
     """Returns the patches of roads, junctions, lines, arrows and signs, of the route's start and goal, and of
     the land; and the boundaries of lanes along the axis of stations."""
-    network, terrain = network_of(road, world), LitTerrain(land)
+    network, land = network_of(road, world), land_patches(ground)
+    is_laid = bool(ground.pavement.rims)  # and does not float
     if (only := only_road(road, world)) is not None:  # whose boundaries show its lines, start and goal
-        patches = _road(network, only, 0.0, terrain, only.profile.has_shoulders, has_others=False)
-        return [*patches, *terrain.patches()], LaneBoundaries.of(only.profile, road.length)
+        patches = _road(network, only, 0.0, is_laid, has_others=False)
+        return [*patches, *land], LaneBoundaries.of(only.profile, road.length)
     parts = NetworkSurface.of(network)
     axis = StationAxis.of(network, parts)
     out: list[Patch] = []
     for member in parts.roads:
-        out += _road(network, member, axis.starts[member.id], terrain, parts.shoulder > 0)
+        out += _road(network, member, axis.starts[member.id], is_laid)
     for area in parts.areas:
         out += _junction(area, axis)
-        if parts.shoulder > 0:
-            out += _banks(area, terrain)
     by_road = {each.id for each in parts.roads if _has_broken_line_only(network, each)}
     for stroke in strokes(network):
         if stroke.kind == "edge" and stroke.road is None:
@@ -298,32 +273,22 @@ def patches_of(road: Road, world: World, land: Land) -> tuple[list[Patch], LaneB
     out += _start_and_goal(road)
     for sign in signs(network):
         out += [_flat(face.points, COLOURS[face.colour]) for face in faces_of(sign)]
-    return [*out, *terrain.patches()], axis.lanes
+    return [*out, *land], axis.lanes
 
 
 def _road(
-    network: Network,
-    member: NetworkRoad,
-    start: float,
-    terrain: LitTerrain,
-    has_ground: bool,
-    has_others: bool = True,
+    network: Network, member: NetworkRoad, start: float, is_laid: bool, has_others: bool = True
 ) -> list[Patch]:
     import shapely
 
     road, profile = member.road, member.profile
-    s = green = stations_between(road, profile.reach)
+    s = green = stations_of(member)
     if has_others:
         first, last = between_crosswalks(network, member)
         green = np.r_[first, s[(s > first) & (s < last)], last]
     out = [*surface(road, profile, s, start), *median(road, profile, green)]
-    if not has_ground:
+    if not is_laid:
         return [*out, *slab(road, profile, s)]
-    banks = list(embankments(road, profile, s, terrain.land))
-    free = (True, True, *free_ends(network, member))
-    out += [
-        patch for bank, is_free in zip(banks, free, strict=True) if is_free for patch in slope(bank, terrain)
-    ]
 
     def is_beside(place: Array) -> bool:
         return not has_others or bool(shapely.distance(network.paved, shapely.Point(place[:2])) > 0.5)
@@ -437,21 +402,6 @@ def _flat(points: Array, kind: int) -> Patch:
 def _patch(points: Array, light: float, triangles: NDArray[np.int64], kind: int) -> Patch:
     values = attributes(0.0, 0.0, np.full(len(points), light))
     return Patch(points, values, triangles, np.full(len(triangles), kind, np.int64))
-
-
-def _banks(area: JunctionSurface, terrain: LitTerrain) -> list[Patch]:
-    import shapely
-
-    whole = shapely.union_all([area.paved, area.shoulder, *area.kerbed, *area.green])
-    out = []
-    for part in shapely.get_parts(whole):
-        ring = shapely.geometry.polygon.orient(shapely.Polygon(part.exterior)).exterior
-        flat = np.asarray(ring.coords, float)[:, :2]
-        edge = np.column_stack([flat, np.full(len(flat), area.height)])
-        near = _offset(edge, -OUTSIDE)
-        bank = bank_from(edge, near, (near - edge)[:, :2] / OUTSIDE, terrain.land, is_left=False)
-        out.append(_strip(bank.foot, bank.edge, level_light(), GRASS))
-    return out
 
 
 POLE, POLE_SIDES = 0.04, 6  # radius of a post in m, and number of its sides

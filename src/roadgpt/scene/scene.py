@@ -1,6 +1,5 @@
 """Defines the Scene: a road that can be rendered."""
 
-import math
 import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -10,10 +9,9 @@ from numpy.typing import NDArray
 
 from roadgpt.errors import UsageError
 from roadgpt.export.ego import CAR
-from roadgpt.network import network_of
-from roadgpt.network.surface import NetworkSurface
+from roadgpt.ground.ground import Ground
+from roadgpt.network.landscape import ground_around
 from roadgpt.road import Road, World
-from roadgpt.road.land import LONGEST_STEP, Land
 from roadgpt.scene.bodies import Body, mesh_of
 from roadgpt.scene.camera import Camera, Pose, axes_of
 from roadgpt.scene.car import palette_of, saloon
@@ -32,18 +30,10 @@ Image = NDArray[np.uint8]
 FARTHEST = 1e7  # m or rad; greatest number in a pose
 
 
-def landscape(road: Road, world: World) -> tuple[Land, Trees]:
-    """Returns the land around all roads of a road's network, and the trees on it."""
-    network = network_of(road, world)
-    roads, parts = [each.road for each in network.roads], NetworkSurface.of(network)
-    wide: dict[float, list[Road]] = {}
-    for each in parts.roads:
-        if each.shoulder > parts.shoulder:
-            wide.setdefault(math.ceil(each.profile.reach), []).append(each.road)
-    has_shoulders = any(each.profile.has_shoulders for each in network.roads)
-    land = Land.around(roads, parts.reach if has_shoulders else None, world.site.z_floor, wide)
-    line = np.concatenate([each.centreline(LONGEST_STEP) for each in roads])
-    return land, plant(line[:, :2], parts.reach, land)
+def landscape(road: Road, world: World) -> tuple[Ground, Trees]:
+    """Returns the ground around all roads of a road's network, and the trees on it."""
+    ground = ground_around(road, world)
+    return ground, plant(ground, world.scene.landscape)
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,8 +43,8 @@ class Scene:
 
     road: Road
     world: World
-    land: Land
-    ground: Mesh
+    ground: Ground
+    mesh: Mesh
     trees: Trees
     lanes: LaneBoundaries
     weather: Weather | None
@@ -68,9 +58,9 @@ class Scene:
         """Returns the scene of a road, or of the whole network of a route; always the same for the same
         arguments."""
         road = world.lay(road)
-        land, trees = landscape(road, world)
-        patches, lanes = patches_of(road, world, land)
-        return cls(road, world, land, Mesh.of(patches), trees, lanes, Weather.of(world.scene, road))
+        ground, trees = landscape(road, world)
+        patches, lanes = patches_of(road, world, ground)
+        return cls(road, world, ground, Mesh.of(patches), trees, lanes, Weather.of(world.scene, road))
 
     def render(
         self,
@@ -97,7 +87,7 @@ class Scene:
             raise UsageError(f"out must be an array of bytes of shape {shape}")
         eye = camera.eye(pose)
         numbers = np.concatenate([eye.position, eye.axes.ravel(), [eye.focal]])
-        meshes = [self.ground, *([] if car is None else [saloon().placed(car, eye)])]
+        meshes = [self.mesh, *([] if car is None else [saloon().placed(car, eye)])]
         meshes += [mesh_of(others)] if others else []
         buffers = self._buffers(camera, sum(len(mesh.triangles) for mesh in meshes))
         buffers.depth.fill(0.0)
@@ -125,7 +115,7 @@ class Scene:
                 np.empty((SAMPLES * high, wide), np.int32),
                 np.empty((count, PLANE)),
                 np.empty(count, np.int64),
-                np.empty((max(*np.ptp(self.ground.ranges[:, :2], axis=1), len(saloon().mesh.points)), 3)),
+                np.empty((max(*np.ptp(self.mesh.ranges[:, :2], axis=1), len(saloon().mesh.points)), 3)),
                 np.empty((high, wide, 3), np.float32),
             )
         return kept[key]

@@ -47,6 +47,7 @@ ASPHALT, PAINTED, STONES = 0.142, (0.80, 0.80, 0.77), (0.235, 0.215, 0.175)
 """Linear colours: the brightness of asphalt, road paint, and the gravel beside the asphalt."""
 LUSH, DRIER = (0.078, 0.150, 0.026), (0.115, 0.075, 0.024)
 """Linear colour of lush grass, and what is added to it where the grass is dry."""
+ROCKS = (0.21, 0.20, 0.19)
 THINNEST = 0.008  # m: smallest pixel width for which markings are computed
 HAZE = 1000.0  # m
 AIR = 0.60, 0.71, 0.79  # linear colour of haze
@@ -308,9 +309,23 @@ def _ground(
         r, g, b = road(tiles, s, t, wide_s, wide_t, x, y, level, lanes)
     else:
         r, g, b = grass(tiles, x + LEAN * z, y - LEAN * z, level)
+        bare = (planes[n, 3] * px + planes[n, 4] * py + planes[n, 5]) * w
+        if bare > 0.0:
+            r, g, b = _rock(tiles, x, y, z, level, bare, r, g, b)
     if numbers[8] > 0.0:
         light *= _shadow(numbers, x, y, z)
     return r * light, g * light, b * light
+
+
+@inlined
+def _rock(
+    tiles: Tiles, x: float, y: float, z: float, level: float, bare: float, r: float, g: float, b: float
+) -> Colour:
+    """Returns a colour in layers of rock, of which a share ``bare`` is seen through grass."""
+    tone = 1.0 + 0.5 * fine_noise(tiles, CLOUD, x * 1.5 + y * 0.7, z * 14.0, level - 1.0)
+    tone *= 1.0 + 0.3 * fine_noise(tiles, GRAIN, (x + y) * 9.0, z * 9.0, level + 3.2)
+    r, g = r + (tone * ROCKS[0] - r) * bare, g + (tone * ROCKS[1] - g) * bare
+    return r, g, b + (tone * ROCKS[2] - b) * bare
 
 
 @inlined

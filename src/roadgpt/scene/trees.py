@@ -2,6 +2,7 @@
 farthest to the nearest. The trees are so far from the road that cars cannot reach them."""
 
 import math
+from collections.abc import Sequence
 from functools import cache
 from typing import NamedTuple
 
@@ -9,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from roadgpt.brief.scene import Land
 from roadgpt.compiled import compiled, inlined
 from roadgpt.geometry.curve import Array
-from roadgpt.road.land import Land
+from roadgpt.ground.ground import Ground
 from roadgpt.scene.light import SUN, SUN_X, SUN_Y
 from roadgpt.scene.patterns import mipmapped
 from roadgpt.scene.raster import RenderBuffers
@@ -25,7 +27,7 @@ EACH = 210.0  # m^2 of land per tree, before trees near roads are removed
 MOST = 900  # trees
 SMALLEST = 0.7  # pixels high, of a tree that is drawn
 NEAREST = 2.0  # m from the camera
-BORDER = 4  # outermost rows and columns of the land on each side, where no trees stand
+STEEPEST = 0.9  # metres up for each metre aside, where trees still stand
 
 
 class Trees(NamedTuple):
@@ -37,26 +39,31 @@ class Trees(NamedTuple):
     tints: Array  # factor by which the brightness of each tree's picture is multiplied, (n,)
 
 
-def plant(line: Array, reach: float, land: Land) -> Trees:
-    """Returns trees in loose groups on the terrain, none of them near a road.
+def plant(ground: Ground, lands: Sequence[Land] = ()) -> Trees:
+    """Returns trees in loose groups on dry ground that is not too steep, none of them near a road.
 
-    ``line`` has points ``(n, 2)`` on the centre lines of the roads, and ``reach`` is the greatest distance
-    from them to the outer edge of a shoulder, all in metres."""
+    A forest among ``lands`` has many more, on both sides or on one; an avenue has rows beside the road."""
     rng = np.random.default_rng(SEED)
-    x0, x1, y0, y1 = land.x[BORDER], land.x[-BORDER - 1], land.y[BORDER], land.y[-BORDER - 1]
-    count = int(min(MOST, (x1 - x0) * (y1 - y0) / EACH))
+    (x0, x1), (y0, y1) = ground.x[[0, -1]], ground.y[[0, -1]]
+    is_forest = any(land.kind == "forest" for land in lands)
+    count = int(min(MOST * (3 if is_forest else 1), (x1 - x0) * (y1 - y0) / (EACH / (5 if is_forest else 1))))
     middles = rng.uniform((x0, y0), (x1, y1), (max(1, count // 7), 2))
     spots = middles[rng.integers(len(middles), size=count)] + rng.normal(0.0, 13.0, (count, 2))
-    alone = rng.random(count) < 0.25
+    alone = rng.random(count) < (0.8 if is_forest else 0.25)
     spots[alone] = rng.uniform((x0, y0), (x1, y1), (int(alone.sum()), 2))
     looks = rng.integers(BROAD + CONIFERS, size=count)
     heights = np.where(looks < BROAD, rng.uniform(6.0, 11.0, count), rng.uniform(8.0, 14.0, count))
     widths = heights * np.where(looks < BROAD, rng.uniform(0.85, 1.1, count), rng.uniform(0.42, 0.5, count))
     tints = rng.uniform(0.8, 1.12, count)
-    away = cKDTree(line).query(spots)[0]
+    rims = np.concatenate([*ground.pavement.rims, np.empty((0, 3))])
+    away = cKDTree(rims[:, :2]).query(spots)[0] if len(rims) else np.full(count, np.inf)
     inside = (spots > (x0, y0)).all(axis=1) & (spots < (x1, y1)).all(axis=1)
-    kept = inside & (away > reach + CLEAR + widths / 2)
-    foot = np.column_stack([spots, land.height(spots[:, 0], spots[:, 1]) - 0.15])
+    x, y = spots.T
+    z = ground.height(x, y)
+    steep = np.hypot(ground.height(x + 1.0, y) - z, ground.height(x, y + 1.0) - z)
+    dry = np.isnan(ground.water(x, y)) & (steep < STEEPEST) & np.isnan(ground.road(x, y))
+    kept = inside & dry & (away > CLEAR + widths / 2)
+    foot = np.column_stack([spots, z - 0.15])
     return Trees(foot[kept], np.column_stack([heights, widths])[kept], looks[kept], tints[kept])
 
 

@@ -14,7 +14,17 @@ from roadgpt.network import only_road
 from roadgpt.road.world import share_in_words
 from roadgpt.traffic.actor import SPEED
 from roadgpt.verdict.oracle import EPSILON, consult, has_departed, is_outside, margins
-from roadgpt.verdict.verdict import STANDS, Cause, Face, Incident, Outcome, Side, Verdict, percent
+from roadgpt.verdict.verdict import (
+    DEPARTURES,
+    STANDS,
+    Cause,
+    Face,
+    Incident,
+    Outcome,
+    Side,
+    Verdict,
+    percent,
+)
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive, Ended
@@ -43,7 +53,7 @@ LEAST = 0.005  # m; smaller distances beyond a marking are not stated
 # a collision are ours.
 SBFT: dict[Cause | None, str] = {
     **dict.fromkeys((None, "stop line", "red light", "failure to yield"), "Successful test"),
-    **dict.fromkeys(("out of lane", "fell", "wrong turn", "wrong way"), "Car drove out of the lane"),
+    **dict.fromkeys((*DEPARTURES, "wrong turn", "wrong way"), "Car drove out of the lane"),
     "stuck": "Car is not moving fast enough",
     "timeout": "Timeout Simulation",
     "collision": "Car collided",
@@ -63,6 +73,9 @@ SOON = 3.0  # s after the cause of a failure, within which a contact is told in 
 FAILED: dict[Cause, str] = {
     "out of lane": "left its lane to the {side}{where} {reached} {fast}{how}",
     "fell": "fell off the road to the {side} {reached} {fast}",
+    "rolled": "left the road to the {side} and rolled over {reached} {fast}",
+    "crashed": "left the road to the {side} and crashed into the slope {reached} {fast}",
+    "sank": "left the road to the {side} and drove into water {reached} {fast}",
     "wrong turn": "took a wrong turn {reached} {fast}",
     "wrong way": "drove against the direction of its lane {reached} {fast}",
     "stop line": "did not stop at the stop sign {reached}: it crossed the line {fast}",
@@ -115,9 +128,9 @@ def judge(
     every = margins(road, drive, world)
     least = float(every[: drive.lane_steps].min())
     side: Side | None = None
-    if cause in ("out of lane", "fell"):
+    if cause in DEPARTURES:
         side = "left" if drive["t"][step] > world.profile_of(road).middle(drive["s"][step]) else "right"
-    if cause == "fell":
+    if cause in DEPARTURES[1:]:
         least = min(least, -EPSILON)
     beyond = most_beyond(road, drive, world)
     handed_to = drive.handed_to(step) if cause else None
@@ -193,7 +206,8 @@ def _first_failure(road: "Road", drive: "Drive", world: "World") -> tuple[int, C
             f"a tolerance of {world.limits.oob_tolerance:g} allows: drive the road again with this tolerance"
         )
     causes: dict[Ended, Cause] = {
-        "fell": "fell", "stuck": "stuck", "timeout": "timeout", "collision": "collision",
+        "fell": "fell", "rolled": "rolled", "crashed": "crashed", "sank": "sank",
+        "stuck": "stuck", "timeout": "timeout", "collision": "collision",
     }  # fmt: skip
     return last, causes.get(drive.ended)
 

@@ -19,9 +19,11 @@ from roadgpt.reading import strictly
 Outcome = Literal["PASS", "FAIL", "UNAVOIDABLE"]
 """UNAVOIDABLE: a collision that no driver could have avoided, which is no failure."""
 Cause = Literal[
-    "out of lane", "fell", "stuck", "timeout", "collision", "wrong turn", "wrong way", "stop line",
+    "out of lane", "fell", "rolled", "crashed", "sank", "stuck", "timeout", "collision", "wrong turn", "wrong way", "stop line",
     "red light", "failure to yield",
 ]  # fmt: skip
+DEPARTURES: tuple[Cause, ...] = ("out of lane", "fell", "rolled", "crashed", "sank")
+"""The causes by which the car is beside its lane."""
 Side = Literal["left", "right"]
 Face = Literal["front", "rear", "left", "right"]
 Severity = Literal["at most 10 % outside", "partly outside", "mostly outside"]

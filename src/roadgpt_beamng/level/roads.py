@@ -16,11 +16,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roadgpt.export.edges import line, named_lines, normals
 from roadgpt.export.ego import goal_of, start_of
-from roadgpt.export.markup import finite
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Edges, Profile, Road, World
+from roadgpt.road.edges import finite, line, named_lines, normals
 from roadgpt.road.profile import LINE
 
 # m between nodes: denser ones fold (BeamNGpy issue 240), and uneven ones make BeamNG's spline swing.

@@ -10,10 +10,10 @@ import numpy as np
 
 from roadgpt.errors import ExportError
 from roadgpt.export.ego import Poses
-from roadgpt.export.markup import finite
 from roadgpt.geometry import wrap_angle
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Profile, Road, World
+from roadgpt.road.edges import finite
 
 STEP = 0.1  # m between cross sections
 MOST = 200_000  # cross sections; longer roads have a wider step

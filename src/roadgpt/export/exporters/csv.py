@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 
 from roadgpt.export.ego import Poses
-from roadgpt.export.markup import finite
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Profile, Road, World
+from roadgpt.road.edges import finite
 
 STEP = 1.0  # m
 DECIMALS = 6

@@ -9,10 +9,10 @@ import numpy as np
 
 from roadgpt.export.ego import Poses
 from roadgpt.export.georeference import degrees
-from roadgpt.export.markup import finite
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Network, network_of, only_road
 from roadgpt.road import Road, World
+from roadgpt.road.edges import finite
 
 STEP = 1.0  # m
 SAME = 1e-6  # m; a width that varies by less is taken as constant

@@ -19,15 +19,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 from PIL import Image
 
-from roadgpt.export.edges import Embankment, embankments, line, named_lines, normals, stations
 from roadgpt.export.ego import Poses, goal_of, on_the_ground, start_of
 from roadgpt.geometry.curve import Array
+from roadgpt.ground.mesh import GroundMesh, mesh_of, water_of
+from roadgpt.network import Network, NetworkRoad, network_of, only_road
+from roadgpt.network.landscape import ground_around
+from roadgpt.network.markings import arrows, strokes
+from roadgpt.network.paved import Area, polygons_in
+from roadgpt.network.surface import JunctionSurface, NetworkSurface, stations_of, triangulated
 from roadgpt.road import Profile, Road, World
-from roadgpt.road.land import FAR, Land
+from roadgpt.road.edges import line, named_lines, normals
 from roadgpt.road.profile import DASH, GAP
 
 THICKNESS = 0.5  # m, thickness of the slabs
 PAINT = 0.005  # m by which markings lie above the road; less would flicker at a coarse depth resolution
+KERB = 0.12  # m, height of a traffic island
 PATH = 0.02  # m by which the path lies above the road
 PATH_WIDTH = 0.3  # m
 NAMES = {"left": "left edge line", "right": "right edge line", "middle": "middle line"}
@@ -42,6 +48,9 @@ MATERIALS = {
     "asphalt": ((0.06, 0.06, 0.065, 1.0), 0.9),
     "gravel": ((0.23, 0.20, 0.15, 1.0), 1.0),
     "grass": ((0.21, 0.32, 0.13, 1.0), 1.0),
+    "rock": ((0.24, 0.23, 0.21, 1.0), 1.0),
+    "water": ((0.07, 0.15, 0.22, 1.0), 0.15),
+    "concrete": ((0.35, 0.33, 0.31, 1.0), 0.9),
     "paint": ((0.85, 0.85, 0.85, 1.0), 0.6),
     "path": ((0.0, 0.30, 0.75, 1.0), 0.7),
 }
@@ -93,6 +102,7 @@ class Gltf:
     name = "gltf"
     suffix = ".glb"
     lacks = ("others on the road",)
+    holds_junctions = True
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the scene.
@@ -102,54 +112,105 @@ class Gltf:
 
 
 def meshes(road: Road, world: World, poses: Poses | None = None) -> list[TriangleMesh]:
-    """Returns the meshes of a road: slabs, lines, the path and, if the road has shoulders, the ground.
+    """Returns the meshes of a road or a network: slabs, lines, the path and, if the roads do not float, the
+    ground with its water.
 
-    The path is the drive ``poses``, or the middle of the driven lane if ``poses`` is None."""
-    profile = world.profile_of(road)
-    s = stations(road, profile.reach)
-    edges, rims = profile.edges(s), profile.rims(s)
-    out = [_slab("road", "asphalt", road, s, *edges)]
+    The path is the drive ``poses``, or the middle of the driven lane if ``poses`` is None; there is none on a
+    map without a route."""
+    network = network_of(road, world)
+    only = only_road(road, world)
+    if only is not None:
+        out = [*_slabs(only, ""), *_lines(only)]
+    else:
+        surface = NetworkSurface.of(network)
+        out = [each for member in surface.roads for each in _slabs(member, f" {member.id}")]
+        out += [each for number, area in enumerate(surface.areas) for each in _junction(area, number)]
+        out += _painted(network)
+    if road.has_way:
+        out.append(_path(road, stations_of(only) if only else road.sample().s, world, poses))
+    ground = ground_around(road, world)
+    if ground.pavement.rims:  # without shoulders, the road floats
+        out.append(_land("ground", "grass", mesh_of(ground)))
+        if len((water := water_of(ground)).triangles):
+            out.append(_land("water", "water", water))
+    return out
+
+
+def _slabs(member: NetworkRoad, number: str) -> list[TriangleMesh]:
+    road, s = member.road, stations_of(member)
+    edges, rims = member.profile.edges(s), member.profile.rims(s)
+    out = [_slab(f"road{number}", "asphalt", road, s, *edges)]
     if (rims.left > edges.left).any():
-        out.append(_slab("left verge", "gravel", road, s, rims.left, edges.left))
+        out.append(_slab(f"left verge{number}", "gravel", road, s, rims.left, edges.left))
     if (rims.right < edges.right).any():
-        out.append(_slab("right verge", "gravel", road, s, edges.right, rims.right))
+        out.append(_slab(f"right verge{number}", "gravel", road, s, edges.right, rims.right))
+    return out
+
+
+def _lines(member: NetworkRoad) -> list[TriangleMesh]:
+    road, profile, s, out = member.road, member.profile, stations_of(member), []
     for number, painted in enumerate(named_lines(profile, s)):
         name = NAMES.get(painted.place) or f"lane line {number}"
         if painted.is_broken:
             out.append(_dashed(name, road, profile, s, painted.number))
         else:
             out.append(_strip(name, "paint", road, s, *painted.edges))
-    out.append(_path(road, s, world, poses))
-    if profile.has_shoulders:  # without a shoulder, the road floats
-        out.append(_ground(road, world, s))
     return out
 
 
-def _ground(road: Road, world: World, s: Array) -> TriangleMesh:
-    """Returns the land around the road, and the embankments from its edges and ends down to the land."""
-    land = Land.around([road], world.profile_of(road).reach, world.site.z_floor)
-    near = slice(len(FAR), -len(FAR))  # the outer rows and columns are only for the horizon
-    x, y = np.meshgrid(land.x[near], land.y[near])
-    slope_y, slope_x = np.gradient(land.heights[near, near], land.y[near], land.x[near])
-    up = np.stack([-slope_x, -slope_y, np.ones_like(slope_x)], axis=-1).reshape(-1, 3)
-    points = np.stack([x, y, land.heights[near, near]], axis=-1).reshape(-1, 3)
-    rows, columns = x.shape
-    at = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).reshape(-1)
-    low = np.stack([at, at + 1, at + columns + 1], axis=-1)
-    high = np.stack([at, at + columns + 1, at + columns], axis=-1)
-    normals = up / np.linalg.norm(up, axis=-1, keepdims=True)
-    level: _Band = points, normals, points[:, :2], np.concatenate([low, high])
-    banks = embankments(road, world.profile_of(road), s, land)
-    return _joined("ground", "grass", [level, *map(_sloped, banks)])
+def _junction(area: JunctionSurface, number: int) -> list[TriangleMesh]:
+    found = [("junction", "asphalt", area.paved, 0.0), ("junction verge", "gravel", area.shoulder, 0.0)]
+    found += [("island", "grass", part, 0.0) for part in area.green]
+    found += [("kerbed island", "concrete", part, KERB) for part in area.kerbed]
+    return [
+        _block(f"{name} {number}", material, part, area.height, up)
+        for name, material, part, up in found
+        if not part.is_empty
+    ]
 
 
-def _sloped(bank: Embankment) -> _Band:
-    left, right = (bank.foot, bank.edge) if bank.is_left else (bank.edge, bank.foot)
-    along = np.gradient(bank.edge, axis=0)
-    facing = np.cross(along, left - right)
-    normals = facing / np.maximum(np.linalg.norm(facing, axis=-1, keepdims=True), 1e-9)
-    points, both, _, triangles = _band(left, right, normals, np.zeros(len(left)), (0.0, 0.0))
-    return points, both, points[:, :2], triangles
+def _block(name: str, material: str, area: Area, height: float, up: float) -> TriangleMesh:
+    """Returns the closed block under a level area, ``up`` metres higher than its surface."""
+    from shapely.geometry.polygon import orient
+
+    flat, corners = triangulated(area)
+    bands: list[_Band] = []
+    for z, facing, triangles in ((height + up, 1.0, corners), (height - THICKNESS, -1.0, corners[:, ::-1])):
+        points = np.column_stack([flat, np.full(len(flat), z)])
+        bands.append((points, np.tile(facing * UP, (len(flat), 1)), flat, triangles))
+    for part in polygons_in(area):
+        for ring in (orient(part).exterior, *orient(part).interiors):
+            line_ = np.asarray(ring.coords, float)[:, :2]
+            along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(line_, axis=0).T))]
+            out = np.diff(line_, axis=0, append=line_[1:2])
+            outward = np.column_stack([out[:, 1], -out[:, 0], np.zeros(len(out))])
+            outward /= np.maximum(np.linalg.norm(outward, axis=1, keepdims=True), 1e-9)
+            high, low = (
+                np.column_stack([line_, np.full(len(line_), z)]) for z in (height + up, height - THICKNESS)
+            )
+            bands.append(_band(high, low, outward, along, (0.0, -THICKNESS)))
+    return _joined(name, material, bands)
+
+
+def _painted(network: Network) -> list[TriangleMesh]:
+    bands: list[_Band] = []
+    for stroke in strokes(network):
+        along = np.gradient(stroke.points[:, :2], axis=0)
+        left = np.column_stack([-along[:, 1], along[:, 0], np.zeros(len(along))])
+        left *= stroke.width / 2 / np.maximum(np.linalg.norm(left, axis=1, keepdims=True), 1e-9)
+        s = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(stroke.points, axis=0), axis=1))]
+        middle = stroke.points + PAINT * UP
+        across = (stroke.width / 2, -stroke.width / 2)
+        bands.append(_band(middle + left, middle - left, np.tile(UP, (len(s), 1)), s, across))
+    for arrow in arrows(network):
+        points = arrow.points + PAINT * UP
+        bands.append((points, np.tile(UP, (len(points), 1)), points[:, :2], arrow.corners))
+    return [_joined("lines", "paint", bands)] if bands else []
+
+
+def _land(name: str, material: str, mesh: GroundMesh) -> TriangleMesh:
+    """Returns the ground or its water, without what is only for the horizon."""
+    return TriangleMesh(name, material, mesh.points, mesh.normals, mesh.points[:, :2], mesh.triangles)
 
 
 def _dashed(name: str, road: Road, profile: Profile, s: Array, index: int) -> TriangleMesh:

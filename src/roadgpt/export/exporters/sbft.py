@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from roadgpt.export.ego import Poses
-from roadgpt.export.markup import finite
 from roadgpt.road import Road, World
+from roadgpt.road.edges import finite
 from roadgpt.road.road import CONTROL_SPACING
 
 DECIMALS = 5

@@ -15,12 +15,12 @@ from typing import NamedTuple
 import numpy as np
 
 from roadgpt.errors import ExportError
-from roadgpt.export.edges import line, stations
 from roadgpt.export.ego import CAR, PULL, Poses, calm_speeds
 from roadgpt.export.markup import Value, XmlElement, number
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Profile, Road, World
+from roadgpt.road.edges import line, stations
 from roadgpt.road.profile import Width
 
 PATIENCE = 120.0  # s, for netconvert

@@ -23,9 +23,10 @@ from roadgpt.brief.scene import Scene, scene_text
 from roadgpt.brief.visibility import rain_of
 from roadgpt.check.describing import describe
 from roadgpt.errors import ExportError, RoadGPTError, UsageError, explained
-from roadgpt.export.edges import FOOT, OUTSIDE, RUN, stations
 from roadgpt.export.ego import CAR
 from roadgpt.geometry.curve import Array
+from roadgpt.ground.ground import Ground
+from roadgpt.ground.mesh import GroundMesh, mesh_of, water_of
 from roadgpt.network import network_of, only_road
 from roadgpt.network.markings import PaintedStroke, arrows, between_crosswalks, signs, strokes
 from roadgpt.network.paved import Area
@@ -36,18 +37,29 @@ from roadgpt.report.canvas import INK, LETTERS, OUTCOMES, SEVERE, VERMILLION, or
 from roadgpt.report.others import COLOURS as OF_KINDS
 from roadgpt.report.plan_view import rings_of
 from roadgpt.road import Profile, Road, World
-from roadgpt.road.land import Land
+from roadgpt.road.edges import stations
 from roadgpt.road.profile import DASH, GAP, LINE
 from roadgpt.run import Run
 from roadgpt.run.atomic import write_whole
 from roadgpt.scene.camera import MOUNTS
 from roadgpt.scene.car import saloon
-from roadgpt.scene.light import CONCRETE, DIRECT, GLASS, PAINT, PALETTE, SHINING, SUN, daylight, screen_table
+from roadgpt.scene.light import (
+    CONCRETE,
+    DIRECT,
+    GLASS,
+    PAINT,
+    PALETTE,
+    SHINING,
+    SUN,
+    WATER,
+    daylight,
+    screen_table,
+)
 from roadgpt.scene.mesh import PLAIN
-from roadgpt.scene.network_mesh import COLOURS, faces_of, near_and_far
+from roadgpt.scene.network_mesh import COLOURS, ROCK, faces_of, near_and_far
 from roadgpt.scene.patterns import noise
 from roadgpt.scene.scene import landscape
-from roadgpt.scene.shade import AIR, ASPHALT, DRIER, LUSH, PAINTED, STONES, panorama, to_screen
+from roadgpt.scene.shade import AIR, ASPHALT, DRIER, LUSH, PAINTED, ROCKS, STONES, panorama, to_screen
 from roadgpt.scene.trees import SIDE, Trees, pictures
 from roadgpt.scene.weather import Weather
 from roadgpt.traffic.actor import STEP
@@ -126,7 +138,6 @@ def _part(name: str) -> str:
     return (HERE / name).read_text(encoding="utf-8")
 
 
-FINEST = 400  # heights of the land are told to this part of the distance between two of its columns
 MOST_STEPS = 6000  # of a drive; drives of up to 2 minutes are complete, longer drives are thinned
 MILLIMETRES, FINE = 3, 5  # digits
 CENTIMETRES = 2  # digits, of outlines that are only drawn on the plan
@@ -212,20 +223,25 @@ def _road(road: Road, world: World, is_only: bool) -> dict[str, Any]:
     return made
 
 
-def _land(land: Land, trees: Trees) -> dict[str, Any]:
-    """Returns heights row by row from south to north, each in units of ``unit`` metres as its difference from
-    west + south - south-west, which is short; and of each tree x, y, z, height and width in decimetres, the
-    number of its picture, and its brightness in percent."""
-    unit = land.cell / FINEST
-    steps = np.diff(np.diff(np.rint(land.heights / unit), axis=0, prepend=0), axis=1, prepend=0)
+def _land(ground: Ground, trees: Trees) -> dict[str, Any]:
+    """Returns the ground and its water as points and corners of triangles; and of each tree x, y, z, height
+    and width in decimetres, the number of its picture, and its brightness in percent."""
     of_trees = [10 * trees.places, 10 * trees.sizes, trees.looks[:, None], 100 * trees.tints[:, None]]
+    (x0, x1), (y0, y1) = ground.x[[0, -1]], ground.y[[0, -1]]
     return {
-        "x": rounded(land.x, 1),
-        "y": rounded(land.y, 1),
-        "unit": unit,
-        "heights": steps.astype(int).reshape(-1).tolist(),
+        "ground": _mesh(mesh_of(ground)),
+        "water": _mesh(water_of(ground)),
+        "isLaid": bool(ground.pavement.rims),
+        "middle": rounded(np.array([x0 + x1, y0 + y1]) / 2, 1),
+        "wide": round(max(x1 - x0, y1 - y0) / 2 + 1.0, 1),
         "trees": np.rint(np.concatenate(of_trees, axis=1)).astype(int).reshape(-1).tolist(),
     }
+
+
+def _mesh(mesh: GroundMesh) -> dict[str, str]:
+    """Returns triangles as text: whole numbers of 32 bits in base 64, the points in centimetres."""
+    parts = {"points": np.rint(100 * mesh.points), "corners": mesh.triangles}
+    return {name: base64.b64encode(part.astype("<i4").tobytes()).decode() for name, part in parts.items()}
 
 
 def _drive(run: Run) -> dict[str, Any] | None:
@@ -462,16 +478,19 @@ def scenery() -> dict[str, Any]:
     """Returns what all pages share, as values for JSON."""
     below, above = daylight(np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]]))
     plain = [rounded(row[:3] + row[3:], COLOUR) for row in PALETTE]
-    named = {name: plain[kind - PLAIN] for name, kind in [*COLOURS.items(), ("concrete", CONCRETE)]}
+    named = {
+        name: plain[kind - PLAIN]
+        for name, kind in [*COLOURS.items(), ("concrete", CONCRETE), ("water", WATER)]
+    }
     return {
         "light": {"sun": SUN.tolist(), "direct": DIRECT, "above": above - DIRECT * SUN[2], "below": below},
         "colours": named
         | {"asphalt": [ASPHALT] * 3, "paint": PAINTED, "gravel": STONES, "haze": AIR}
-        | {"lush": LUSH, "dry": np.add(LUSH, DRIER).tolist()},
+        | {"rock": ROCKS, "lush": LUSH, "dry": np.add(LUSH, DRIER).tolist()},
         "plain": plain,
         "mounts": {name: MOUNTS[name]._asdict() for name in ("bonnet", "chase")},
         "car": _car(),
-        "banks": {"run": RUN, "foot": FOOT, "outside": OUTSIDE},
+        "rock": {"from": ROCK[0], "to": ROCK[1]},
         "sky": {"lowest": LOWEST, "picture": _sky()},
         "trees": _trees(),
     }

@@ -92,7 +92,7 @@ class MujocoSimulator:
         while True:
             if company is not None:
                 seen = company.seen(vehicle.row, step * CONTROL)
-            ended = monitor.ended(vehicle.row, step * CONTROL, vehicle.has_fallen)
+            ended = monitor.ended(vehicle.row, step * CONTROL, vehicle.mishap)
             if ended is not None:
                 break
             now = vehicle.row.tolist()

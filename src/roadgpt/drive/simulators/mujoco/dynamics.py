@@ -200,7 +200,9 @@ def _wheel_body(car: Car, axle: Axle, name: str, side: int) -> str:
 
 
 AIR = 1.2  # kg/m^3, at 20 degrees C
-UNDER = 0.25  # m below the road's surface, beyond which a wheel has no contact any more
+UNDER = 0.25  # m below the surface of a road that floats, beyond which a wheel has no contact any more
+SOLID = 5.0  # m, the same where land is below
+BLURRED = 1.5  # cells of the land's grid beside a rim, in which its heights are mixed with those of the road
 # The car's own state beside MuJoCo's, as indices into one array ...
 STEER, THROTTLE, BRAKE, EXPECTED, STATION, SUPPORT, PAST_VX, PAST_VY = range(8)
 STATE = 8
@@ -247,8 +249,22 @@ class MujocoHandles(NamedTuple):
     com: FloatArray
 
 
+class Land(NamedTuple):
+    """Heights of the land beside the road on a grid in metres; without any rows, there is nothing."""
+
+    heights: FloatArray  # (rows, columns), roads included
+    water: FloatArray  # heights of the surface of water, (rows, columns); far below where there is none
+    x: float  # of the first column
+    y: float  # of the first row
+    cell: float
+    slope: float  # largest of cuttings and fills, metres up for each metre aside
+
+
+NO_LAND = Land(np.empty((0, 0)), np.empty((0, 0)), 0.0, 0.0, 1.0, 0.0)
+
+
 class Ground(NamedTuple):
-    """The surface under the wheels: a road or a plane."""
+    """The surface under the wheels: a road or a plane, and the land around it."""
 
     sampled: SampledRoad
     rims: FloatArray
@@ -257,6 +273,7 @@ class Ground(NamedTuple):
     beyond: float  # length in m by which the ground continues before the start and after the end of the road
     friction: float
     lane: LanePolygon
+    land: Land = NO_LAND
 
 
 class CarState(NamedTuple):
@@ -352,20 +369,63 @@ def _hinge_angle(car: Any, axle: Any, steer: float, side: int) -> float:
 
 
 @inlined
+def beyond_rim(ground: Ground, s: float, t: float) -> float:
+    """Returns how far a point of the road's surface lies beyond its rim or its ends, in m; negative on it."""
+    sampled = ground.sampled
+    over = room_at(ground.rims, sampled.first, sampled.step, s, t)
+    return -min(over, s + ground.beyond, sampled.length + ground.beyond - s)
+
+
+@inlined
+def land_contact(
+    land: Land, x: float, y: float, road: float, slope: float, lateral: float, heading: float, beyond: float
+) -> tuple[float, Vector]:
+    """Returns the height of the land at a point and its normal.
+
+    Near the rim, ``beyond`` metres from it, cells of the grid reach over the road; there the slope begins at
+    the height of the rim. ``road``, ``slope`` and ``lateral`` are the height and slopes of the road's
+    surface, continued to the point."""
+    u = min(max((x - land.x) / land.cell, 0.0), land.heights.shape[1] - 1.0)
+    v = min(max((y - land.y) / land.cell, 0.0), land.heights.shape[0] - 1.0)
+    i, j = min(int(u), land.heights.shape[1] - 2), min(int(v), land.heights.shape[0] - 2)
+    u, v = u - i, v - j
+    a, b = land.heights[j, i], land.heights[j, i + 1]
+    c, d = land.heights[j + 1, i], land.heights[j + 1, i + 1]
+    height = (a * (1.0 - u) + b * u) * (1.0 - v) + (c * (1.0 - u) + d * u) * v
+    rise_x = ((b - a) * (1.0 - v) + (d - c) * v) / land.cell
+    rise_y = ((c - a) * (1.0 - u) + (d - b) * u) / land.cell
+    if beyond < BLURRED * land.cell:
+        most = land.slope * beyond
+        if abs(height - road) > most:
+            height = road + most if height > road else road - most
+            return height, normal_of(slope, lateral, heading)
+    norm = 1.0 / math.sqrt(1.0 + rise_x * rise_x + rise_y * rise_y)
+    return height, (-rise_x * norm, -rise_y * norm, norm)
+
+
+@inlined
 def _ground_contact(
     car: Any, ground: Ground, wheel: FloatArray, centre: FloatArray
-) -> tuple[Vector, float, float]:
-    """Returns the normal of the ground under a wheel's centre, the distance of the centre from it in m, and
-    the share of the tyre's width, 0 to 1, that has ground under it."""
+) -> tuple[Vector, float, float, float]:
+    """Returns the normal of the ground under a wheel's centre, the distance of the centre from it in m, the
+    share of the tyre's width, 0 to 1, that has ground under it, and how deep below its surface the ground
+    still is."""
     sampled = ground.sampled
     s, t, height, slope, lateral, heading = locate_on(
         sampled.table, sampled.first, sampled.step, centre[0], centre[1], wheel[AT]
     )
     wheel[AT] = s
     normal = normal_of(slope, lateral, heading)
-    over = room_at(ground.rims, sampled.first, sampled.step, s, t)
-    over = min(over, s + ground.beyond, sampled.length + ground.beyond - s)
-    return normal, (centre[2] - height) * normal[2], min(max(over / car.tyre_width + 0.5, 0.0), 1.0)
+    beyond = beyond_rim(ground, s, t)
+    if beyond > 0.0 and ground.land.heights.shape[0] > 0:
+        height, normal = land_contact(
+            ground.land, centre[0], centre[1], height, slope, lateral, heading, beyond
+        )
+        return normal, (centre[2] - height) * normal[2], 1.0, SOLID
+    share = min(max(-beyond / car.tyre_width + 0.5, 0.0), 1.0)
+    if ground.land.heights.shape[0] > 0:
+        return normal, (centre[2] - height) * normal[2], 1.0, SOLID
+    return normal, (centre[2] - height) * normal[2], share, UNDER
 
 
 @inlined
@@ -440,14 +500,14 @@ def _wheel(
     spin = SPIN_DOF[i]
     centre, k = mj.xpos[WHEEL[i]], mj.xmat[CARRIER[i]]
     axis = k[1], k[4], k[7]
-    normal, gap, share = _ground_contact(car, ground, wheel, centre)
+    normal, gap, share, under = _ground_contact(car, ground, wheel, centre)
     state[SUPPORT] = min(state[SUPPORT], share)
     px, py, pz = centre[0] - normal[0] * gap, centre[1] - normal[1] * gap, centre[2] - normal[2] * gap
     # The velocity that the contact point would have if the wheel did not spin.
     velocity = velocity_at(mj, CARRIER[i], (px, py, pz))
     along, left, norm = _contact_axes(axis, normal)
     depth = car.unloaded_radius - gap * norm
-    touches = depth > 0.0 and gap > -UNDER
+    touches = depth > 0.0 and gap > -under
     load = _wheel_load(axle, share, depth, dot(velocity, normal)) if touches else 0.0
     gain = (1.0 - 2.0 * (i % 2)) * axle.camber_gain
     camber = math.asin(min(max(dot(axis, normal), -1.0), 1.0)) - gain * mj.qpos[SLIDE_DOF[i] + 1]
@@ -473,8 +533,10 @@ def _wheel(
 def _lies_low(mj: MujocoHandles, car: Any, ground: Ground, state: FloatArray) -> bool:
     sampled = ground.sampled
     x, y, z = mj.xpos[BODY, 0], mj.xpos[BODY, 1], mj.xpos[BODY, 2]
-    s, _, height, _, lateral, _ = locate_on(sampled.table, sampled.first, sampled.step, x, y, state[STATION])
+    s, t, height, _, lateral, _ = locate_on(sampled.table, sampled.first, sampled.step, x, y, state[STATION])
     state[STATION] = s
+    if ground.land.heights.shape[0] > 0 and beyond_rim(ground, s, t) > -2.0:
+        return True  # some of the hull may be over land
     low: bool = (z - height) / math.sqrt(1.0 + lateral * lateral) < car.cg_height - 0.6 * car.ground_clearance
     return low
 
@@ -561,12 +623,18 @@ def hull_forces(mj: Any, car: Any, ground: Any, station: float, hull: FloatArray
         s, t, height, slope, lateral, heading = locate_on(
             sampled.table, sampled.first, sampled.step, px, py, station + hx
         )
-        normal = normal_of(slope, lateral, heading)
+        normal, beyond, deepest = normal_of(slope, lateral, heading), beyond_rim(ground, s, t), DEEP
+        if ground.land.heights.shape[0] > 0:
+            deepest = SOLID
+            if beyond > 0.0:
+                height, normal = land_contact(
+                    ground.land, px, py, height, slope, lateral, heading, beyond
+                )
+        elif beyond > 0.0:
+            continue
         nx, ny, nz = normal
         depth = (height - pz) * nz
-        if depth <= 0.0 or depth > DEEP or room_at(ground.rims, sampled.first, sampled.step, s, t) < 0.0:
-            continue
-        if s < -ground.beyond or s > sampled.length + ground.beyond:
+        if depth <= 0.0 or depth > deepest:
             continue
         ux, uy, uz = velocity_at(mj, BODY, (px, py, pz))
         up = dot((ux, uy, uz), normal)

@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 
 from roadgpt.compiled import COMPILES, FUNCTIONS, addresses, bound, compiled, inlined
-from roadgpt.drive.drive import COLUMNS, FloatArray
+from roadgpt.drive.drive import COLUMNS, FloatArray, Mishap
 from roadgpt.drive.lane_position import LanePolygon, share_outside
 from roadgpt.drive.sampled_road import BANK, GRADE, SampledRoad, locate_on, sample_road, stations_of
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Car, tables
@@ -27,10 +27,13 @@ from roadgpt.drive.simulators.mujoco.dynamics import (
     WHEEL_STATE,
     CarState,
     Ground,
+    Land,
     MujocoHandles,
+    beyond_rim,
     call,
     centre_height,
     hull_points,
+    land_contact,
     model_of,
     normal_of,
     step_once,
@@ -45,6 +48,10 @@ STEPS = 10  # physics steps in a control step
 CONTROL = STEPS * STEP
 """Length of a control step in seconds: the time between two commands of the driver."""
 FALLEN = 2.0  # m below the road: from there RoadGPT's car cannot return to its floating road
+MISHAPS: tuple[Mishap | None, ...] = (None, "fell", "rolled", "crashed", "sank")
+FELL, ROLLED, CRASHED, SANK = range(1, 5)
+SHOCK = 80.0  # m/s^2, mean of a control step, beside the road: no tyre brakes that hard, a slope stopped the car
+NO_WATER = -1e6  # m
 FALLEN_OVER = 0.5  # cosine of 60 degrees between car and road: a saloon that leans more overturns
 _ROW = {name: place for place, name in enumerate(COLUMNS)}
 TIME, OUTSIDE = _ROW["time"], _ROW["outside"]
@@ -74,20 +81,21 @@ class Vehicle:
         self._parts = (_handles(self._model, self._data), *tables(car), ground, car_state)
         self.row: FloatArray = np.zeros(len(COLUMNS))
         """The present state of the car, in the order of COLUMNS."""
-        self.has_fallen = False
+        self.mishap: Mishap | None = None
+        """What ends every drive: see ``Ended``; None if nothing has happened to the car."""
         self._step = bound(control_step, (*self._parts, 0.0, 0.0, 0.0, 0, self.row))
 
     def __getstate__(self) -> dict[str, Any]:
         arrays = {"_state": self._state, "wheels": self.wheels, "row": self.row}
         return {"car": self.car, "ground": self._ground, "data": self._data, "arrays": arrays,
-                "has_fallen": self.has_fallen}  # fmt: skip
+                "mishap": self.mishap}  # fmt: skip
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(state["car"], state["ground"])  # type: ignore[misc]  # with a model of its own
         mujoco.mj_copyData(self._data, self._model, state["data"])
         for name, values in state["arrays"].items():
             getattr(self, name)[:] = values
-        self.has_fallen = state["has_fallen"]
+        self.mishap = state["mishap"]
 
     @classmethod
     def on(cls, road: "Road", world: "World", car: Car = ETK_LIKE) -> "Vehicle":
@@ -98,7 +106,8 @@ class Vehicle:
         beyond = profile.reach
         if road.passages:  # shoulders reach around the corners of junctions
             beyond = float(profile.shoulder(road.length))
-        return cls(car, Ground(sampled, rims, beyond, world.site.friction, lane))
+        ground = Ground(sampled, rims, beyond, world.site.friction, lane)
+        return cls(car, ground._replace(land=_land(road, world)) if world.has_ground else ground)
 
     def put(self, s: float, t: float, speed: float = 0.0) -> None:
         """Places the car at station ``s`` and offset ``t`` in metres, facing along the road, at time 0.
@@ -123,7 +132,7 @@ class Vehicle:
             self._state[BRAKE] = 1.0
             for _ in range(LONGEST_SETTLING):
                 self._move(0.0, 0.0, 1.0, STEPS)
-                if self.has_fallen or np.abs(data.qvel).max() < SETTLED:
+                if self.mishap or np.abs(data.qvel).max() < SETTLED:
                     break
         data.time = 0.0
         self._move(0.0, 0.0, 0.0 if speed else 1.0, 0)
@@ -148,7 +157,7 @@ class Vehicle:
     def _move(self, steer: float, throttle: float, brake: float, steps: int) -> None:
         # always floats, for which the step is compiled
         command = float(steer), float(throttle), float(brake)
-        self.has_fallen = self._step(*self._parts, *command, steps, self.row)
+        self.mishap = MISHAPS[self._step(*self._parts, *command, steps, self.row)]
 
     def _row_at(self, s: float) -> FloatArray:
         sampled = self._ground.sampled
@@ -171,6 +180,16 @@ class Vehicle:
                 math.cos(angle) * up - math.sin(angle) * left,
             )
         return np.column_stack([along, left, up])
+
+
+def _land(road: "Road", world: "World") -> Land:
+    from roadgpt.network.landscape import ground_around  # only drives over land load it
+
+    ground = ground_around(road, world)
+    x, y = np.meshgrid(ground.x, ground.y)
+    water = np.nan_to_num(ground.water_level(x, y), nan=NO_WATER)
+    of = ground.layers
+    return Land(ground.heights, water, of.x, of.y, of.cell, of.slope)
 
 
 def plane(friction: float = 1.0, grade: float = 0.0, size: float = 5000.0, car: Car = ETK_LIKE) -> Vehicle:
@@ -197,8 +216,8 @@ def _handles(model: Any, data: Any) -> MujocoHandles:
 
 
 @inlined
-def _look(mj: MujocoHandles, car: Any, ground: Ground, car_state: CarState, row: FloatArray) -> bool:
-    """Fills the row; returns whether the car has fallen off the road or overturned."""
+def _look(mj: MujocoHandles, car: Any, ground: Ground, car_state: CarState, row: FloatArray) -> int:
+    """Fills the row; returns the number in MISHAPS of what has happened to the car."""
     sampled, state, box = ground.sampled, car_state.state, car_state.box
     # The last half step changed the coordinates; update the body's axes.
     call(mj.place, mj.model, mj.data)
@@ -230,9 +249,18 @@ def _look(mj: MujocoHandles, car: Any, ground: Ground, car_state: CarState, row:
         box[k, 1] = y + m[3] * bx + m[4] * by - m[5] * car.cg_height
     row[OUTSIDE] = share_outside(ground.lane.edges, ground.lane.step, box, s, car_state.scratch)
     nx, ny, nz = normal_of(slope, lateral, heading)
-    upright = m[2] * nx + m[5] * ny + m[8] * nz
-    fell: bool = z - car.cg_height < height - FALLEN or upright < FALLEN_OVER
-    return fell
+    beyond, land = beyond_rim(ground, s, t), ground.land
+    if land.heights.shape[0] > 0:
+        if beyond > 0.0:
+            height, (nx, ny, nz) = land_contact(land, x, y, height, slope, lateral, heading, beyond)
+            i = min(max(int((x - land.x) / land.cell + 0.5), 0), land.heights.shape[1] - 1)
+            j = min(max(int((y - land.y) / land.cell + 0.5), 0), land.heights.shape[0] - 1)
+            if z < land.water[j, i]:
+                return SANK
+        return ROLLED if m[8] < FALLEN_OVER else 0
+    if z - car.cg_height < height - FALLEN or m[2] * nx + m[5] * ny + m[8] * nz < FALLEN_OVER:
+        return FELL
+    return 0
 
 
 @compiled
@@ -247,13 +275,13 @@ def control_step(
     brake: float,
     steps: int,
     row: FloatArray,
-) -> bool:
-    """Runs ``steps`` steps of 2 ms and writes the car's state into ``row``. Returns whether the car fell
-    off the road or overturned. ``steer`` is in rad, ``throttle`` and ``brake`` are 0 to 1."""
+) -> int:
+    """Runs ``steps`` steps of 2 ms and writes the car's state into ``row``. Returns the number in MISHAPS of
+    what has happened to the car. ``steer`` is in rad, ``throttle`` and ``brake`` are 0 to 1."""
     car = cars[0]
     for _ in range(steps):
         step_once(mj, car, axles, ground, car_state, steer, throttle, brake)
-    fell = _look(mj, car, ground, car_state, row)
+    mishap = _look(mj, car, ground, car_state, row)
     m = mj.xmat[BODY]
     vx, vy = mj.qvel[0], mj.qvel[1]
     dt = max(steps, 1) * STEP
@@ -267,4 +295,6 @@ def control_step(
     row[AY] = gy * c - gx * n
     row[ACCELERATED] = throttle
     row[BRAKED] = brake
-    return fell
+    if mishap == 0 and ground.land.heights.shape[0] > 0 and gx * gx + gy * gy > SHOCK * SHOCK and steps > 0:
+        return CRASHED
+    return mishap

@@ -1,7 +1,8 @@
 // The land around the road, its trees and the sky: those of films, which the page holds as data.
 
 const COLOURS = Object.fromEntries(Object.entries(SCENERY.colours).map(([name, rgb]) => [name, new THREE.Color(...rgb)]));
-const FAR = 250; // m between columns of the land beyond its hills
+const CENTI = 100; // lengths of the land are told in centimetres
+const LOWER = 0.02; // m by which verges and the land lie below the asphalt
 const DOME = 9000; // m, radius of the sky
 const HAZE = 1300; // m, depth in which all becomes haze: about as films have it
 
@@ -13,28 +14,8 @@ function pictureOf(address) {
 
 const PICTURES = { sky: pictureOf(SCENERY.sky.picture), trees: pictureOf(SCENERY.trees) };
 
-// Heights in metres, row by row.
-function heightsOf({ x, unit, heights }) {
-  const wide = x.length;
-  const out = new Float64Array(heights.length);
-  heights.forEach((step, at) => {
-    const [hasWest, hasSouth] = [at % wide > 0, at >= wide];
-    out[at] = step + (hasWest && out[at - 1]) + (hasSouth && out[at - wide]) - (hasWest && hasSouth && out[at - wide - 1]);
-  });
-  return out.map((height) => height * unit);
-}
-
-// The height of the land at a place; null without land that reaches up to the road.
-function groundOf({ land, network, road }) {
-  if (!((network || road.lanes).shoulder > 0)) return null;
-  const heights = heightsOf(land);
-  const wide = land.x.length;
-  return (x, y) => {
-    const [across, up] = [placeIn(land.x, x), placeIn(land.y, y)];
-    const row = (j) => mix(heights[j * wide + across.i], heights[j * wide + across.i + 1], across.u);
-    return mix(row(up.i), row(up.i + 1), up.u);
-  };
-}
+// Whole numbers of 32 bits, little-endian, from text.
+const numbersOf = (text) => new Int32Array(Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)).buffer);
 
 // Grass is drier in some places than in others.
 function grassAt(x, y) {
@@ -42,19 +23,37 @@ function grassAt(x, y) {
   return COLOURS.lush.clone().lerp(COLOURS.dry, clamp(0.42 + 0.27 * wide, 0, 1)).multiplyScalar(1 + 0.12 * wide);
 }
 
-function landMesh({ land }, origin, grain) {
+// The ground or the water: `look` gives the colour of each point from its place and how steep it is, 0 to 1.
+function landShape({ points, corners }, origin, look, down) {
   const shape = new Shape3(origin);
-  const wide = land.x.length;
-  const isFar = ([column, at]) => column[Math.min(at + 1, column.length - 1)] - column[Math.max(at - 1, 0)] >= FAR;
-  heightsOf(land).forEach((z, at) => {
-    const [i, j] = [at % wide, Math.floor(at / wide)];
-    // far columns lie too wide apart for what is dry and what is not
-    shape.point(land.x[i], land.y[j], z, isFar([land.x, i]) || isFar([land.y, j]) ? grassAt(0, 0) : grassAt);
+  const [all, steep] = [numbersOf(points), []];
+  const at = (i) => [all[3 * i] / CENTI, all[3 * i + 1] / CENTI, all[3 * i + 2] / CENTI];
+  shape.corners = Array.from(numbersOf(corners));
+  inGroups(shape.corners, 3).forEach((triangle) => {
+    const [a, b, c] = triangle.map(at);
+    const [u, v] = [b, c].map((p) => new THREE.Vector3(p[0] - a[0], p[1] - a[1], p[2] - a[2]));
+    const up = u.cross(v).normalize().z;
+    for (const i of triangle) steep[i] = Math.max(steep[i] || 0, 1 - up);
   });
-  for (let j = 0; j + 1 < land.y.length; j++) {
-    for (let i = 0; i + 1 < wide; i++) shape.quad(j * wide + i, j * wide + i + 1, (j + 1) * wide + i + 1, (j + 1) * wide + i);
+  for (let i = 0; 3 * i < all.length; i++) {
+    const [x, y, z] = at(i);
+    shape.point(x, y, z - down, look(x, y, steep[i] || 0));
   }
-  return shape.mesh(THREE.MeshLambertMaterial, { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, ...grain });
+  return shape;
+}
+
+function landMesh({ land }, origin, grain) {
+  const { from, to } = SCENERY.rock;
+  const { middle, wide } = land;
+  const look = (x, y, steep) => {
+    // far points lie too wide apart for what is dry and what is not
+    const isFar = Math.max(Math.abs(x - middle[0]), Math.abs(y - middle[1])) > wide;
+    return (isFar ? grassAt(0, 0) : grassAt(x, y)).clone().lerp(COLOURS.rock, clamp((steep - from) / (to - from), 0, 1));
+  };
+  const group = new THREE.Group();
+  group.add(landShape(land.ground, origin, look, LOWER).mesh(THREE.MeshLambertMaterial, grain));
+  if (land.water.corners) group.add(landShape(land.water, origin, () => COLOURS.water, 0).mesh());
+  return group;
 }
 
 function textureOf(picture) {

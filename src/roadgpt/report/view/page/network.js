@@ -21,11 +21,11 @@ function plain(shape, { points, corners }, z, colour) {
 }
 
 // How a line goes on at each of its points: a unit vector to its left.
-function leftOf(line, isClosed) {
+function leftOf(line) {
   const last = line.length - 1;
   return line.map((_, i) => {
-    const [x0, y0] = line[i > 0 ? i - 1 : isClosed ? last : 0];
-    const [x1, y1] = line[i < last ? i + 1 : isClosed ? 0 : last];
+    const [x0, y0] = line[Math.max(i - 1, 0)];
+    const [x1, y1] = line[Math.min(i + 1, last)];
     const long = Math.hypot(x1 - x0, y1 - y0) || 1;
     return [-(y1 - y0) / long, (x1 - x0) / long];
   });
@@ -40,21 +40,17 @@ function wall(shape, line, z0, z1, colour) {
   });
 }
 
-function junctions(paved, verge, { areas }, ground) {
+function junctions(paved, verge, { areas }, isLaid) {
   const { asphalt, concrete, gravel } = COLOURS;
   for (const { z, paved: carriageway, shoulder: [bare, ...grown], green, kerbed, rims } of areas) {
     plain(paved, carriageway, z, asphalt);
-    if (bare) plain(verge, bare, z - 0.02, gravel);
-    [...grown, ...green].forEach((part) => plain(verge, part, z - 0.02, grassAt));
+    if (bare) plain(verge, bare, z - LOWER, gravel);
+    [...grown, ...green].forEach((part) => plain(verge, part, z - LOWER, grassAt));
     for (const island of kerbed) {
       plain(paved, island, z + KERB_HIGH, concrete);
       wall(paved, inGroups(island.rim, 2), z + KERB_HIGH, z, concrete);
     }
-    for (const rim of rims) {
-      const ring = inGroups(rim, 2).map(([x, y]) => [x, y, z - 0.02]);
-      if (ground) slope(verge, ring, leftOf(ring, true).map(([x, y]) => [-x, -y]), ground, true);
-      else wall(paved, ring, z - 0.001, z - THICK, concrete);
-    }
+    if (!isLaid) for (const rim of rims) wall(paved, inGroups(rim, 2), z - 0.001, z - THICK, concrete);
   }
 }
 
@@ -66,7 +62,7 @@ function networkMarkings(scene, origin) {
   const lines = new Shape3(origin);
   for (const { width, points } of scene.network.strokes) {
     const line = inGroups(points, 3);
-    const left = leftOf(line, false);
+    const left = leftOf(line);
     const sides = [1, -1].map((side) => line.map(([x, y, z], i) => lines.point(
       x + (side * width * left[i][0]) / 2, y + (side * width * left[i][1]) / 2, z + 0.015, paint,
     )));

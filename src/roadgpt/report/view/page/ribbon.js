@@ -3,7 +3,6 @@
 const PINCH = 0.95; // share of the radius; an offset line nearer to the centre of its bend would fold
 const THICK = 0.3; // m of asphalt
 const LEAN = 0.6; // m that grain moves sideways for each metre upwards
-const ACROSS = [0, 1 / 6, 1 / 3, 1 / 2, 2 / 3, 5 / 6, 1]; // of an end of the road: where its slope has points
 const BARE = 0.35, GROWN = 0.9; // m beside the asphalt: gravel up to the first, grass from the second on
 const WORN = [[0, 1], [0.15, 1], [0.3, 0.85], [0.5, 0.93], [0.7, 0.85], [0.85, 1], [1, 1]]; // across a lane: share of its width, light
 
@@ -91,33 +90,18 @@ function cap(shape, road, s, left, right, colour, isEnd) {
   shape.quad(...corners);
 }
 
-// A slope of grass from a line of points down to just below the ground, in the directions `outwards`.
-function slope(shape, line, outwards, ground, isClosed) {
-  const { run, foot, outside } = SCENERY.banks;
-  const sides = line.map(([x, y, z], i) => {
-    const [u, v] = outwards[i];
-    const down = Math.max(0, z - ground(x + outside * u, y + outside * v)) + foot;
-    return [shape.point(x, y, z, grassAt), shape.point(x + run * down * u, y + run * down * v, z - down, grassAt)];
-  });
-  sides.forEach(([top, foot], i) => {
-    const next = sides[i + 1] || (isClosed && sides[0]);
-    if (next) shape.quad(top, foot, next[1], next[0]);
-  });
-}
-
 // Asphalt with markings' ground in one mesh, what grows beside it in another: their grain is not the same.
 function pavement(scene, origin, renderer) {
   const [paved, verge] = [new Shape3(origin), new Shape3(origin)];
-  const ground = groundOf(scene);
-  for (const road of roadsOf(scene)) sweep(paved, verge, road, ground);
-  if (scene.network) junctions(paved, verge, scene.network, ground);
+  for (const road of roadsOf(scene)) sweep(paved, verge, road);
+  if (scene.network) junctions(paved, verge, scene.network, scene.land.isLaid);
   const group = new THREE.Group();
   group.add(paved.mesh(THREE.MeshLambertMaterial, asphaltGrain(renderer)), verge.mesh(THREE.MeshLambertMaterial, meadowGrain(renderer)));
   return group;
 }
 
 // The surface of one road; `ends` says which of its ends are free, and both are if it says nothing.
-function sweep(paved, verge, road, ground) {
+function sweep(paved, verge, road) {
   const { bounds, rims, shoulder, median } = road.lanes;
   const free = road.ends || [true, true];
   const { asphalt, concrete, gravel } = COLOURS;
@@ -139,27 +123,16 @@ function sweep(paved, verge, road, ground) {
   band(paved, road, road.s, [left, -THICK], [left, 0], concrete);
   band(paved, road, road.s, [right, 0], [right, -THICK], concrete);
   for (const end of [0, road.length].filter((_, i) => free[i])) cap(paved, road, end, offsetAt(road, left, end), offsetAt(road, right, end), concrete, end > 0);
-  if (!(shoulder > 0 && ground)) return;
+  if (!(shoulder > 0)) return;
   const [bare, grown] = [BARE, GROWN].map((metres) => Math.min(1, metres / shoulder));
   for (const [edge, rim, side] of [[left, rims.left, 1], [right, rims.right, -1]]) {
     for (const [a, b, one, other] of [[0, bare, gravel, gravel], [bare, grown, gravel, grassAt], [grown, 1, grassAt, grassAt]]) {
-      const pair = [[between(edge, rim, a), -0.02], [between(edge, rim, b), -0.02]];
+      const pair = [[between(edge, rim, a), -LOWER], [between(edge, rim, b), -LOWER]];
       if (side > 0) band(verge, road, road.s, pair[1], pair[0], other, one);
       else band(verge, road, road.s, ...pair, one, other);
     }
-    const line = road.s.map((s) => beside(road, s, offsetAt(road, rim, s)));
-    const outwards = road.heading.map((heading) => [-side * Math.sin(heading), side * Math.cos(heading)]);
-    slope(verge, line.map(lowered), outwards, ground);
   }
-  [[0, -1], [road.length, 1]].filter((_, i) => free[i]).forEach(([s, way]) => {
-    const [a, b] = [rims.left, rims.right].map((t) => offsetAt(road, t, s));
-    const heading = read(road.heading, placeIn(road.s, s));
-    const line = ACROSS.map((share) => beside(road, s, mix(way > 0 ? a : b, way > 0 ? b : a, share)));
-    slope(verge, line.map(lowered), ACROSS.map(() => [way * Math.cos(heading), way * Math.sin(heading)]), ground);
-  });
 }
-
-const lowered = ([x, y, z]) => [x, y, z - 0.02];
 
 // The median along a road, in pieces: green, but for crosswalks at its ends.
 function stripsOf({ length, lanes: { median } }) {

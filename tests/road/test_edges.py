@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roadgpt.export.edges import CHORD, line, stations
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.road import Design, Road, build
+from roadgpt.road.edges import CHORD, line, stations
 from strategies import designs
 
 

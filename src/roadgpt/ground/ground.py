@@ -1,0 +1,186 @@
+"""Defines the Ground: the land around roads, with the roads laid into it.
+
+On carriageways, junctions and verges, the height is that of the road's own surface. Beside them, slopes lead
+up or down to the land."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from roadgpt.geometry.curve import Array
+from roadgpt.ground import grading
+from roadgpt.ground.grading import Layers
+from roadgpt.ground.relief import Relief
+
+SLOPE = 0.5  # metres up or down for each metre aside: 1:2, usual for earthworks (FHWA, AASHTO 4.8.4)
+FINEST, MOST_CELLS = 1.0, 1_100_000  # m, smallest cell; cells of a grid at most
+
+
+SAME = 2e-4  # m between a corner of an outline and the corner of the surface that it is
+INSIDE = 1e-4  # m inside an outline, where the height of the surface is read
+
+
+def _left_of(ring: Array) -> Array:
+    """Returns unit vectors ``(n, 2)`` to the left of a closed ring ``(n, 2)`` at its corners."""
+    ahead = np.roll(ring, -1, axis=0) - ring
+    ahead /= np.maximum(np.hypot(*ahead.T), 1e-9)[:, None]
+    both = ahead + np.roll(ahead, 1, axis=0)
+    left = np.column_stack([-both[:, 1], both[:, 0]])
+    return np.asarray(left / np.maximum(np.hypot(*left.T), 1e-9)[:, None])
+
+
+@dataclass(frozen=True, eq=False)
+class Pavement:
+    """The surface of all roads that lie on the ground, with their verges, in metres."""
+
+    triangles: Array
+    """The corners of triangles, ``(m, 3, 3)``. Where verges lie over a carriageway, those of the carriageway
+    come first and count."""
+    rims: tuple[Array, ...]
+    """The outlines of the whole surface, closed rings ``(n, 3)``; the ground is on the right of each."""
+
+    @classmethod
+    def of(cls, triangles: Array, outlines: Sequence[Array]) -> "Pavement":
+        """Returns the surface of triangles ``(m, 3, 3)`` with these outlines, rings ``(n, 2)`` that get the
+        heights of the surface."""
+        if not outlines:
+            return cls(triangles, ())
+        flat = np.concatenate(outlines)
+        low, high = flat.min(axis=0) - 1.0, flat.max(axis=0) + 1.0
+        side = max(FINEST, float(np.sqrt(np.prod(high - low) / MOST_CELLS)))
+        rows, columns = (int(n / side) + 2 for n in (high - low)[::-1])
+        plain = np.ascontiguousarray(triangles.reshape(-1, 9))
+        x, y = low.tolist()
+        starts, members = grading.buckets(plain, x, y, side, rows, columns)
+        none, no = np.empty((rows, columns)), np.empty((0, 0), np.int32)
+        layers = Layers(x, y, side, none, no, no, none, 0.0, 0.0, 1.0, none, plain, starts, members, SLOPE)
+        inwards = np.concatenate([_left_of(ring) for ring in outlines])
+        heights = grading.roads_at(layers, *(flat + INSIDE * inwards).T)
+        corners = triangles.reshape(-1, 3)
+        away, nearest = map(np.asarray, cKDTree(corners[:, :2]).query(flat))
+        points = np.column_stack([flat, np.where(np.isnan(heights), corners[nearest, 2], heights)])
+        points[away < SAME] = corners[nearest[away < SAME]]
+        ends = np.cumsum([len(ring) for ring in outlines])[:-1]
+        return cls(triangles, tuple(np.split(points, ends)))
+
+    @cached_property
+    def segments(self) -> Array:
+        """The segments of all rims, ``(n, 6)``."""
+        parts = [np.hstack([ring, np.roll(ring, -1, axis=0)]) for ring in self.rims]
+        return np.concatenate(parts) if parts else np.empty((0, 6))
+
+
+class Earthworks(NamedTuple):
+    """What has to be dug and heaped up to lay the roads into the land."""
+
+    cut: float  # m^3
+    fill: float  # m^3
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """Heights of the land with its roads, at every point."""
+
+    relief: Relief
+    pavement: Pavement
+    layers: Layers
+
+    @classmethod
+    def of(
+        cls, relief: Relief, pavement: Pavement, slope: float = SLOPE, cell: float | None = None
+    ) -> "Ground":
+        """Lays roads into land.
+
+        Args:
+            relief: the land without roads.
+            pavement: the surface of the roads.
+            slope: the largest slope of cuttings and fills, in metres up for each metre aside.
+            cell: distance in metres between the points of the grid; None: 1 m, more on large maps."""
+        rows, columns = (n - 1 for n in relief.heights.shape)
+        if cell is None:
+            cell = max(FINEST, float(np.sqrt(rows * columns * relief.cell**2 / MOST_CELLS)))
+        shape = tuple(int(n * relief.cell / cell) + 1 for n in (rows, columns))
+        triangles = np.ascontiguousarray(pavement.triangles.reshape(-1, 9))
+        place = relief.x, relief.y, cell
+        none, no = np.empty((1, 1)), np.empty((0, 0), np.int32)
+        starts, members = grading.buckets(triangles, *place, *shape)
+        layers = Layers(
+            *place, none, no, no, relief.heights, relief.x, relief.y, relief.cell,
+            pavement.segments, triangles, starts, members, slope,
+        )  # fmt: skip
+        land = grading.resampled(np.empty(shape), layers)
+        roads = grading.on_roads(triangles, *place, *shape)
+        cuts, top = grading.spread(pavement.segments, land, roads, *place, slope, 1.0)
+        fills, floor = grading.spread(pavement.segments, land, roads, *place, slope, -1.0)
+        graded = np.minimum(np.maximum(land, floor), top)
+        heights = np.where(np.isnan(roads), graded, roads)
+        return cls(relief, pavement, layers._replace(heights=heights, cuts=cuts, fills=fills))
+
+    @property
+    def cell(self) -> float:
+        """Distance in metres between the points of the grid."""
+        return self.layers.cell
+
+    @property
+    def heights(self) -> Array:
+        """Heights in metres at the points of the grid, roads included, (rows, columns)."""
+        return self.layers.heights
+
+    @cached_property
+    def x(self) -> Array:
+        """The columns of the grid in metres."""
+        return np.asarray(self.layers.x + self.cell * np.arange(self.heights.shape[1]))
+
+    @cached_property
+    def y(self) -> Array:
+        """The rows of the grid in metres."""
+        return np.asarray(self.layers.y + self.cell * np.arange(self.heights.shape[0]))
+
+    def height(self, x: Array, y: Array) -> Array:
+        """Returns the exact heights ``(n,)`` in metres at points ``x``, ``y``, ``(n,)`` each, roads
+        included. Beyond the grid, the height is that of the nearest point on its border."""
+        return grading.heights_at(self.layers, np.asarray(x, float), np.asarray(y, float), True)
+
+    def beside(self, x: Array, y: Array) -> Array:
+        """Returns the heights ``(n,)`` that the ground would have if it were nowhere covered by roads."""
+        return grading.heights_at(self.layers, np.asarray(x, float), np.asarray(y, float), False)
+
+    def road(self, x: Array, y: Array) -> Array:
+        """Returns the heights ``(n,)`` of the roads' surface in metres, NaN beside the roads."""
+        return grading.roads_at(self.layers, np.asarray(x, float), np.asarray(y, float))
+
+    def water(self, x: Array, y: Array) -> Array:
+        """Returns the heights ``(n,)`` of the water's surface in metres, NaN where the ground is dry."""
+        found = self.water_level(x, y)
+        return np.asarray(np.where(self.height(x, y) < found, found, np.nan))
+
+    def is_wet(self, x: Array, y: Array) -> NDArray[np.bool_]:
+        """Returns whether there is water, or the edge of it is near, at points ``(n,)``."""
+        return ~np.isnan(self.water_level(x, y))
+
+    def water_level(self, x: Array, y: Array) -> Array:
+        """Returns the heights ``(n,)`` of the surface of water that is there or near, NaN where there is none.
+        """
+        level = self.relief.water
+        i = np.rint((np.asarray(x, float) - self.relief.x) / self.relief.cell).astype(int)
+        j = np.rint((np.asarray(y, float) - self.relief.y) / self.relief.cell).astype(int)
+        rows, columns = level.shape
+        return np.asarray(level[j.clip(0, rows - 1), i.clip(0, columns - 1)])
+
+    @cached_property
+    def earthworks(self) -> Earthworks:
+        """The volumes of soil between the land and the ground that was made of it."""
+        land = grading.resampled(np.empty(self.heights.shape), self.layers)
+        above = (land - self.heights) * self.cell**2
+        return Earthworks(float(above.clip(min=0).sum()), float((-above).clip(min=0).sum()))
+
+    @cached_property
+    def walls(self) -> NDArray[np.bool_]:
+        """Where cuttings and fills have no room for slopes, at each point of the grid."""
+        steep = np.hypot(*np.gradient(self.heights, self.cell))
+        return np.asarray(steep > 2.5 * self.layers.slope)

@@ -1,0 +1,127 @@
+"""Divides the ground into triangles that meet the rims of the roads without a seam: fine near roads, coarse
+far away."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import Delaunay, cKDTree
+
+from roadgpt.geometry.curve import Array
+from roadgpt.ground.ground import Ground
+
+SIZES = ((32.0, np.inf), (16.0, 130.0), (8.0, 60.0), (4.0, 24.0), (2.0, 7.0))
+"""Side of the squares in metres, and the distance from a road up to which they are divided so far."""
+WATERSIDE = 8.0  # m, side of the squares beside water
+NEAREST = 0.55  # of a square's side; a corner that is nearer to a rim is left out
+ROUNDS = 6  # of halving those segments of rims that no triangle has as a side
+
+
+@dataclass(frozen=True, eq=False)
+class GroundMesh:
+    """Triangles of the ground, without the roads, in metres with z up."""
+
+    points: Array  # (n, 3)
+    triangles: NDArray[np.int64]  # indices of points, (m, 3), counter-clockwise from above
+
+    @cached_property
+    def normals(self) -> Array:
+        """The upward unit normals at the points, (n, 3): means of those of the triangles around."""
+        a, b, c = (self.points[self.triangles[:, k]] for k in range(3))
+        facing = np.cross(b - a, c - a)
+        found = np.zeros_like(self.points)
+        for k in range(3):
+            np.add.at(found, self.triangles[:, k], facing)
+        found[:, 2] += 1e-12
+        return np.asarray(found / np.linalg.norm(found, axis=1, keepdims=True))
+
+
+def mesh_of(ground: Ground) -> GroundMesh:
+    """Returns the ground from the rims of the roads to the horizon."""
+    rings = ground.pavement.rims
+    corners = _corners(ground)
+    far = ground.relief.beyond
+    for _ in range(ROUNDS):
+        rims = np.concatenate(rings) if rings else np.empty((0, 3))
+        points = np.concatenate([rims, corners, far])
+        triangles = _triangles(points, ground)
+        if not (halved := _with_missing_halved(rings, triangles)):
+            break
+        rings = halved
+    return GroundMesh(points, triangles)
+
+
+def water_of(ground: Ground) -> GroundMesh:
+    """Returns the surface of all water. It reaches a little into the land, which hides it there."""
+    relief = ground.relief
+    wet = ~np.isnan(relief.water)
+    cells = wet[:-1, :-1] & wet[1:, :-1] & wet[:-1, 1:] & wet[1:, 1:]
+    low = relief.heights < np.nan_to_num(relief.water, nan=-np.inf)
+    cells &= low[:-1, :-1] | low[1:, :-1] | low[:-1, 1:] | low[1:, 1:]
+    rows, columns = np.nonzero(cells)
+    wide = relief.heights.shape[1]
+    a, b = rows * wide + columns, (rows + 1) * wide + columns
+    quads = np.concatenate([np.stack([a, a + 1, b + 1], axis=1), np.stack([a, b + 1, b], axis=1)])
+    used, triangles = np.unique(quads, return_inverse=True)
+    j, i = used // wide, used % wide
+    points = np.column_stack([relief.x + relief.cell * i, relief.y + relief.cell * j, relief.water[j, i]])
+    return GroundMesh(points, triangles.reshape(-1, 3))
+
+
+def _corners(ground: Ground) -> Array:
+    """Returns the corners ``(n, 3)`` of squares that become smaller towards the roads, beside the roads."""
+    x0, y0, x1, y1 = ground.x[0], ground.y[0], ground.x[-1], ground.y[-1]
+    rims = np.concatenate([*ground.pavement.rims, np.full((1, 3), np.inf)])[:, :2]
+    rims = rims[np.isfinite(rims[:, 0])]
+    tree = cKDTree(rims) if len(rims) else None
+    found, size = [], SIZES[0][0]
+    columns, rows = np.arange(x0, x1, size), np.arange(y0, y1, size)
+    cells = np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 2)
+    for size, _ in SIZES:
+        around = np.concatenate([cells + [a * size, b * size] for a in (0, 1) for b in (0, 1)])
+        around = np.unique(np.minimum(around, [x1, y1]), axis=0)
+        away = np.full(len(around), np.inf) if tree is None else tree.query(around)[0]
+        found.append(around[away > NEAREST * size])
+        if tree is None or size == SIZES[-1][0]:
+            break
+        half, reach = size / 2, SIZES[len(found)][1]
+        near = tree.query(cells + half)[0] < reach + size * 0.71
+        near |= (size > WATERSIDE) & ground.is_wet(*(cells + half).T)
+        cells = np.concatenate([cells[near] + [a * half, b * half] for a in (0, 1) for b in (0, 1)])
+    flat = np.unique(np.concatenate(found), axis=0)
+    if tree is not None:  # corners of larger squares, between those of smaller ones
+        away = tree.query(flat)[0]
+        flat = flat[away > NEAREST * SIZES[-1][0]]
+    flat = flat[np.isnan(ground.road(*flat.T))]
+    return np.column_stack([flat, ground.beside(*flat.T)])
+
+
+def _triangles(points: Array, ground: Ground) -> NDArray[np.int64]:
+    middle = points[:, :2].mean(axis=0)
+    found = np.asarray(Delaunay(points[:, :2] - middle).simplices, np.int64)
+    a, b, c = (points[found[:, k], :2] for k in range(3))
+    turn = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    found[turn < 0] = found[turn < 0][:, ::-1]
+    inside = ~np.isnan(ground.road(*((a + b + c) / 3).T))
+    return found[~inside & (np.abs(turn) > 1e-9)]
+
+
+def _with_missing_halved(rings: tuple[Array, ...], triangles: NDArray[np.int64]) -> tuple[Array, ...] | None:
+    """Returns the rings with a point in the middle of each segment that is no side of a triangle, None if all
+    are."""
+    n = int(triangles.max(initial=0)) + 1
+    sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    there = np.unique(sides.min(axis=1) * n + sides.max(axis=1))
+    out, start, is_whole = [], 0, True
+    for ring in rings:
+        one = start + np.arange(len(ring))
+        other = np.roll(one, -1)
+        lost = ~np.isin(np.minimum(one, other) * n + np.maximum(one, other), there)
+        start += len(ring)
+        if lost.any():
+            is_whole = False
+            middles = (ring + np.roll(ring, -1, axis=0)) / 2
+            ring = np.insert(ring, np.flatnonzero(lost) + 1, middles[lost], axis=0)
+        out.append(ring)
+    return None if is_whole else tuple(out)

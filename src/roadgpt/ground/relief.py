@@ -1,0 +1,376 @@
+"""Shapes the land before any road is laid into it: heights and water by kind of land, around a given way.
+
+The way comes first. Near it the land has its height; away from it hills, valleys, ridges and water grow.
+Noise is gradient noise in several octaves. Source: Perlin, *Improving Noise*, SIGGRAPH 2002."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter
+from scipy.spatial import cKDTree
+
+from roadgpt.brief.scene import Land
+from roadgpt.compiled import compiled, inlined
+from roadgpt.geometry.curve import Array
+
+Kind = Literal["flat", "rolling", "hilly", "mountain"]
+CELL = 8.0  # m between the points of land that is made
+MARGIN = 130.0  # m of land around the way
+LEAST = 40.0  # m, least side of the area without the margin
+HORIZON = (300.0, 700.0, 1500.0, 3000.0, 6000.0, 9000.0)  # m beyond the margin: rings of points that are seen
+BEARINGS = 72  # points of each ring
+FREE = 4.0  # m beside the centre line, up to which the land has the height of the way
+SHORE = 1.2  # m, least height of any road above water near it
+DEEP = 3.0  # m of water
+BANK, BEACH = 0.25, 0.12  # slopes below and above the edge of water
+STRAIGHT_ON = 20.0  # m between the points by which a way is continued before its start and behind its end
+
+
+@dataclass(frozen=True)
+class _Look:
+    hills: float  # m, height of the hills; their length is next
+    length: float
+    far: float  # m, height of the hills at the horizon
+    grown: float  # m from the way, where they have their height
+
+
+LOOKS: dict[Kind, _Look] = {
+    "flat": _Look(1.5, 140.0, 8.0, 90.0),
+    "rolling": _Look(5.0, 150.0, 30.0, 80.0),
+    "hilly": _Look(14.0, 220.0, 120.0, 110.0),
+    "mountain": _Look(60.0, 420.0, 900.0, 190.0),
+}
+"""Ours: heights that fit the names in a landscape of Central Europe."""
+
+
+@dataclass(frozen=True, eq=False)
+class Relief:
+    """Heights of the land on a square grid, as it would be without roads."""
+
+    x: float  # of the first column in metres
+    y: float  # of the first row
+    cell: float  # m between rows and columns
+    heights: Array
+    """Heights in metres, of shape (rows, columns). Between the points, the surface is the cubic of Catmull
+    and Rom, which passes through them; outside, the land has the height of the border."""
+    water: Array
+    """Heights of the surface of water in metres, of the same shape; NaN where there is none near. Where the
+    land is higher than the water, it is dry."""
+    beyond: Array
+    """Points ``(n, 3)`` in metres outside the grid, as far as the horizon; may be empty."""
+
+    def at(self, x: Array, y: Array) -> Array:
+        """Returns the heights ``(n,)`` in metres at points ``x``, ``y``, ``(n,)`` each."""
+        return sampled(self.heights, self.x, self.y, self.cell, np.asarray(x, float), np.asarray(y, float))
+
+
+@inlined
+def cubic_at(table: Array, x0: float, y0: float, cell: float, x: float, y: float) -> float:
+    """Returns the height of Catmull's and Rom's surface through a grid at one point."""
+    rows, columns = table.shape
+    u = min(max((x - x0) / cell, 0.0), columns - 1.0)
+    v = min(max((y - y0) / cell, 0.0), rows - 1.0)
+    i, j = min(int(u), columns - 2), min(int(v), rows - 2)
+    u, v = u - i, v - j
+    found = 0.0
+    for b in range(-1, 3):
+        row = 0.0
+        at = min(max(j + b, 0), rows - 1)
+        for a in range(-1, 3):
+            row += _weight(a, u) * table[at, min(max(i + a, 0), columns - 1)]
+        found += _weight(b, v) * row
+    return found
+
+
+@inlined
+def _weight(knot: int, u: float) -> float:
+    if knot == -1:
+        return -0.5 * u * (1.0 - u) * (1.0 - u)
+    if knot == 0:
+        return 1.0 + u * u * (1.5 * u - 2.5)
+    if knot == 1:
+        return u * (0.5 + u * (2.0 - 1.5 * u))
+    return -0.5 * u * u * (1.0 - u)
+
+
+@compiled
+def sampled(table: Array, x0: float, y0: float, cell: float, x: Array, y: Array) -> Array:
+    """Returns the heights ``(n,)`` of the surface through a grid at n points."""
+    found = np.empty(len(x))
+    for n in range(len(x)):
+        found[n] = cubic_at(table, x0, y0, cell, x[n], y[n])
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """The points of a way that land is made around, and those of all roads."""
+
+    points: Array  # (n, 3) along the tested car's road, in metres
+    others: Array  # (m, 3) on all roads, those of the way among them
+
+    @classmethod
+    def through_the_middle(cls, size: float, height: float, seed: int) -> "Way":
+        """Returns a way from west to east through a square, for land that is made without any road."""
+        rng = np.random.default_rng(seed)
+        x = np.arange(0.0, size + 2.0, 2.0)
+        turns = rng.uniform(0, 2 * np.pi, 3)
+        y = size / 2 + sum(
+            size * share * np.sin(x * k * np.pi / size + turn)
+            for share, k, turn in zip((0.06, 0.04, 0.02), (1, 2, 4), turns, strict=True)
+        )
+        points = np.column_stack([x, y, np.full_like(x, height)])
+        return cls(points, points)
+
+    @property
+    def box(self) -> tuple[Array, Array]:
+        """The least and the greatest x and y of land around it, in metres."""
+        low, high = self.others[:, :2].min(axis=0), self.others[:, :2].max(axis=0)
+        low, high = np.minimum(low, (low + high - LEAST) / 2), np.maximum(high, (low + high + LEAST) / 2)
+        return low - MARGIN, high + MARGIN
+
+
+@dataclass(frozen=True, eq=False)
+class _Places:
+    """Where points lie from the way and the roads."""
+
+    x: Array
+    y: Array
+    share: Array  # of the way, 0 at its start and 1 at its end
+    side: Array  # 1 left of it, -1 right
+    away: Array  # m from the way
+    free: Array  # m from the nearest road
+
+    @classmethod
+    def of(cls, x: Array, y: Array, way: Way) -> "_Places":
+        flat, points = np.column_stack([x.ravel(), y.ravel()]), way.points[:, :2]
+        free = np.asarray(cKDTree(way.others[:, :2]).query(flat)[0])
+        steps = np.arange(STRAIGHT_ON, STRAIGHT_ON * 40, STRAIGHT_ON)[:, None]
+        out, back = (
+            v / max(float(np.hypot(*v)), 1e-9) for v in (points[-1] - points[-2], points[0] - points[1])
+        )
+        line = np.concatenate([(points[0] + steps * back)[::-1], points, points[-1] + steps * out])
+        away, nearest = map(np.asarray, cKDTree(line).query(flat))
+        ahead = np.gradient(line, axis=0)[nearest]
+        off = flat - line[nearest]
+        side = np.where(ahead[:, 0] * off[:, 1] - ahead[:, 1] * off[:, 0] >= 0, 1.0, -1.0)
+        share = (nearest - len(steps)).clip(0, len(points) - 1) / max(1, len(points) - 1)
+        return cls(x, y, *(each.reshape(x.shape) for each in (share, side, away, free)))
+
+
+def made(
+    way: Way, kind: Kind, lands: Sequence[Land], seed: int, box: tuple[Array, Array] | None = None
+) -> Relief:
+    """Returns land of a kind around a way, with valleys, ridges and water.
+
+    ``box`` are the least and the greatest x and y; None: as far around the roads as pictures need it."""
+    low, high = way.box if box is None else box
+    x, y = (np.arange(low[i], high[i] + CELL, CELL) for i in (0, 1))
+    places = _Places.of(*np.meshgrid(x, y), way)
+    base = _base(places, way, x, y)
+    heights, water = _shaped(places, base, way, kind, lands, seed)
+    beyond = (
+        _beyond(low, high, float(base.mean()), way, kind, lands, seed) if box is None else np.empty((0, 3))
+    )
+    return Relief(float(x[0]), float(y[0]), CELL, heights, water, beyond)
+
+
+def level_land(way: Way, level: float) -> Relief:
+    """Returns flat land around a way, ``level`` metres high and a little lower at the horizon."""
+    low, high = way.box
+    side = float((high - low).max())
+    shape = np.full((2, 2), level)
+    rings = _rings(low, high)
+    beyond = np.column_stack([rings, np.full(len(rings), level - 4.0)])
+    return Relief(float(low[0]), float(low[1]), side, shape, np.full((2, 2), np.nan), beyond)
+
+
+def _rings(low: Array, high: Array) -> Array:
+    middle, radius = (low + high) / 2, float(np.hypot(*(high - low))) / 2
+    turn = np.arange(BEARINGS) * 2 * np.pi / BEARINGS
+    rings = [
+        middle + (radius + far) * np.column_stack([np.cos(turn + n), np.sin(turn + n)])
+        for n, far in enumerate(HORIZON)
+    ]
+    return np.concatenate(rings)
+
+
+def _beyond(
+    low: Array, high: Array, level: float, way: Way, kind: Kind, lands: Sequence[Land], seed: int
+) -> Array:
+    flat = _rings(low, high)
+    places = _Places.of(flat[:, 0], flat[:, 1], way)
+    heights, water = _shaped(places, np.full(len(flat), level), way, kind, lands, seed)
+    far = np.repeat(HORIZON, BEARINGS)
+    rise = LOOKS[kind].far * (0.5 + noise(flat[:, 0], flat[:, 1], 2600.0, 3, seed + 1))
+    heights = heights + np.where(np.isnan(water), rise * smooth(far, 0.0, 4000.0), 0.0)
+    heights[-BEARINGS:] = np.minimum(heights[-BEARINGS:], level - 10.0)
+    return np.column_stack([flat, heights])
+
+
+def _base(places: _Places, way: Way, x: Array, y: Array) -> Array:
+    """Returns the heights of the roads, continued smoothly over a whole grid: means of means of what is near
+    (push and pull; Gortler et al., *The Lumigraph*, SIGGRAPH 1996)."""
+    total, count = np.zeros(places.x.shape), np.zeros(places.x.shape)
+    i = np.rint((way.others[:, 0] - x[0]) / CELL).astype(int).clip(0, len(x) - 1)
+    j = np.rint((way.others[:, 1] - y[0]) / CELL).astype(int).clip(0, len(y) - 1)
+    np.add.at(total, (j, i), way.others[:, 2])
+    np.add.at(count, (j, i), 1.0)
+    heights = _pulled(np.where(count > 0, total / np.maximum(count, 1), 0.0), (count > 0).astype(float))
+    return np.asarray(gaussian_filter(heights, 1.0, mode="nearest"))
+
+
+def _pulled(values: Array, known: Array) -> Array:
+    if known.all():
+        return values
+    rows, columns = (-(-n // 2) * 2 for n in values.shape)
+    pad = [(0, rows - values.shape[0]), (0, columns - values.shape[1])]
+    weights = np.pad(known, pad)
+    sums = np.pad(values * known, pad)
+    weights, sums = (a.reshape(rows // 2, 2, columns // 2, 2).sum(axis=(1, 3)) for a in (weights, sums))
+    below = _pulled(sums / np.maximum(weights, 1e-12), np.minimum(weights, 1.0))
+    below = gaussian_filter(below, 1.0, mode="nearest")
+    above = np.repeat(np.repeat(below, 2, axis=0), 2, axis=1)[: values.shape[0], : values.shape[1]]
+    return values * known + above * (1.0 - known)
+
+
+def _shaped(
+    places: _Places, base: Array, way: Way, kind: Kind, lands: Sequence[Land], seed: int
+) -> tuple[Array, Array]:
+    look = LOOKS[kind]
+    hills = noise(places.x, places.y, look.length, 4, seed)
+    if kind == "mountain":
+        hills = 1.0 - 2.0 * np.abs(hills)  # ridges where noise changes its sign (Musgrave 1994)
+    heights = base + look.hills * hills * smooth(places.free, FREE, look.grown)
+    if kind == "mountain":  # the way lies on a slope
+        uphill = places.side * _chosen(seed)
+        lean = np.where(uphill > 0, 0.5, -0.4) * np.minimum(np.maximum(places.free - FREE, 0.0), 160.0)
+        heights = heights + _softened(lean)
+    water = np.full(heights.shape, np.nan)
+    for number, land in enumerate(lands):
+        heights, water = _with_land(heights, water, land, number, len(lands), places, base, way, seed)
+    return heights, water
+
+
+def _softened(rise: Array) -> Array:
+    """Returns a rise without the steps where points change from one side of the way to the other, far away
+    from it; of single points, it is returned unchanged."""
+    return np.asarray(gaussian_filter(rise, 1.5, mode="nearest")) if rise.ndim == 2 else rise
+
+
+def _chosen(seed: int) -> float:
+    return 1.0 if np.random.default_rng([seed, 5]).random() < 0.5 else -1.0
+
+
+def _with_land(
+    heights: Array, water: Array, land: Land, number: int, count: int, places: _Places, base: Array, way: Way,
+    seed: int,
+) -> tuple[Array, Array]:  # fmt: skip
+    """Returns heights and water with one more valley, ridge or water. What the way leads across or through
+    is in the middle of its part of the way: those that cross it share the way."""
+    side = {"left": 1.0, "right": -1.0}.get(land.side or "", _chosen(seed + number))
+    beside = places.side == side
+    middle = (number + 0.5) / count
+    length = len(way.points) * _spacing(way)
+    along = (places.share - middle) * length  # m
+    off = places.away
+    wave = noise(places.x, places.y, 160.0, 3, seed + 11 * number + 3)
+    grown = smooth(places.free, FREE, 60.0)
+    crossed = land.lie in ("across", "through")
+    if land.kind == "valley":
+        if crossed:
+            sunk = 14.0 * np.exp(-((along / 35.0) ** 2)) * smooth(off, 5.0, 25.0)
+            return heights - sunk, water
+        rise = 90.0 * np.tanh(np.maximum(places.free - 18.0, 0.0) / 150.0)
+        rise = rise * (1.0 + 0.35 * wave)
+        return heights + (rise if land.side is None else _softened(np.where(beside, -rise / 2, 0.0))), water
+    if land.kind == "ridge":
+        if crossed:
+            return heights + 16.0 * np.exp(-((along / 40.0) ** 2)) * smooth(off, 4.0, 20.0), water
+        crest = 55.0 * np.exp(-(((places.away - 85.0) / 45.0) ** 2)) * (1.0 + 0.3 * wave) * grown
+        if land.lie == "along" and land.side is None:
+            return heights - 45.0 * np.tanh(np.maximum(places.free - 12.0, 0.0) / 90.0), water
+        return heights + _softened(np.where(beside, crest, 0.0)), water
+    if land.kind in ("lake", "coast", "river"):
+        return _with_water(heights, water, land, beside, along, length, middle, places, base, way, wave)
+    return heights, water
+
+
+def _spacing(way: Way) -> float:
+    steps = np.hypot(*np.diff(way.points[:, :2], axis=0).T)
+    return float(steps.mean()) if len(steps) else 1.0
+
+
+def _with_water(
+    heights: Array, water: Array, land: Land, beside: NDArray[np.bool_], along: Array, length: float,
+    middle: float, places: _Places, base: Array, way: Way, wave: Array,
+) -> tuple[Array, Array]:  # fmt: skip
+    """Returns heights and water with a lake, a river or a coast beside the way or across it."""
+    if land.lie in ("across", "through"):
+        wide = {"river": 9.0, "lake": 45.0, "coast": 45.0}[land.kind]
+        inside = 1.0 - np.abs(along + 14.0 * wave * smooth(off := places.away, 20.0, 80.0)) / wide
+        inside = np.where(off < 220.0 if land.kind == "lake" else True, inside, -1.0)
+        near = way.points[np.abs(np.linspace(0, 1, len(way.points)) - middle) * length <= 2 * wide]
+        level = np.full(heights.shape, float(near[:, 2].min()) - 5.0)
+    else:
+        first, wide = {"river": (26.0, 9.0), "lake": (30.0, 80.0), "coast": (32.0, 1e5)}[land.kind]
+        centre = first + wide
+        inside = 1.0 - np.abs(places.free - centre + 8.0 * wave) / wide
+        inside = np.where(beside & (places.free > first - 14.0), inside, -1.0)
+        if land.kind == "lake":
+            inside = np.minimum(inside, 1.0 - np.abs(along) / max(60.0, 0.38 * length))
+        if land.kind == "river":
+            level = base - SHORE - 2.5
+        else:
+            part = np.abs(np.linspace(0, 1, len(way.points)) - middle) * length <= max(60.0, 0.4 * length)
+            level = np.full(heights.shape, float(way.points[part, 2].min()) - SHORE - 0.8)
+            if land.kind == "coast":
+                level[:] = float(way.others[:, 2].min()) - SHORE - 0.8
+    out = -inside * min(wide, 80.0)  # m from the edge of the water; negative in it
+    shore = level + np.where(out < 0.0, np.maximum(BANK * out, -DEEP), BEACH * out)
+    inland = smooth(out, 6.0, 40.0)
+    drawn = np.where(out < 40.0, shore + (heights - shore) * inland, heights)
+    lowered = np.where((out > 8.0) & (out < 60.0), np.maximum(drawn, level + 0.5), drawn)
+    return lowered, np.where(out < 3.0 * CELL, level, water)
+
+
+def smooth(values: Array, low: float, high: float) -> Array:
+    """Returns 0 up to ``low``, 1 from ``high`` on, and a smooth step in between."""
+    share = np.clip((values - low) / (high - low), 0.0, 1.0)
+    return np.asarray(share * share * (3.0 - 2.0 * share))
+
+
+def noise(x: Array, y: Array, length: float, octaves: int, seed: int) -> Array:
+    """Returns gradient noise between about -1 and 1 at points, with waves ``length`` metres long, and shorter
+    ones of half the height for each octave."""
+    found, height = np.zeros(np.shape(x)), 1.4
+    for octave in range(octaves):
+        found += height * _gradient_noise(x / length, y / length, seed * 131 + octave)
+        length, height = length / 2.0, height / 2.1
+    return found
+
+
+def _gradient_noise(u: Array, v: Array, seed: int) -> Array:
+    i, j = np.floor(u).astype(np.int64), np.floor(v).astype(np.int64)
+    du, dv = u - i, v - j
+    su, sv = (d * d * d * (d * (d * 6 - 15) + 10) for d in (du, dv))
+    rows = []
+    for b in (0, 1):
+        knots = []
+        for a in (0, 1):
+            angle = _hashed(i + a, j + b, seed) * (2 * np.pi / 4294967296.0)
+            knots.append(np.cos(angle) * (du - a) + np.sin(angle) * (dv - b))
+        rows.append(knots[0] + su * (knots[1] - knots[0]))
+    return np.asarray(rows[0] + sv * (rows[1] - rows[0]))
+
+
+def _hashed(i: NDArray[np.int64], j: NDArray[np.int64], seed: int) -> NDArray[np.float64]:
+    """Returns whole numbers below 2^32 that look random (Wang's mixing of bits)."""
+    mask = np.int64(0xFFFFFFFF)
+    h = (i * 374761393 + j * 668265263 + seed * 2246822519) & mask
+    h = ((h ^ (h >> 13)) * 1274126177) & mask
+    h = ((h ^ (h >> 16)) * 2246822519) & mask
+    return np.asarray((h ^ (h >> 15)), float)
