@@ -154,9 +154,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
                 break
             self._vehicle.move(turn * ETK_LIKE.max_steer_angle, max(pedal, 0.0), max(-pedal, 0.0))
             self._step += 1
-            self._ended = self._monitor.ended(
-                self._vehicle.row, self._step * CONTROL, self._vehicle.mishap
-            )
+            self._ended = self._monitor.ended(self._vehicle.row, self._step * CONTROL, self._vehicle.mishap)
         self._row = row = self._vehicle.see()
         aside = abs(row["t"] - float(self._profile.middle(row["s"])))
         self._gain = row["s"] - before

@@ -1,5 +1,6 @@
 """The page of a road: what stands in it, and that nothing in a description gets out of its place."""
 
+import base64
 import json
 import math
 import re
@@ -161,10 +162,15 @@ def test_a_road_s_own_lanes_and_bank_are_told_at_each_station() -> None:
 def test_the_landscape_is_that_of_films(driven: Run) -> None:
     assert driven.road is not None
     told, film = view.scene(driven)["land"], Scene.of(driven.road, driven.world)
-    steps = np.reshape(told["heights"], film.land.heights.shape)
-    heights = told["unit"] * steps.cumsum(axis=0).cumsum(axis=1)
-    assert heights == pytest.approx(film.land.heights, abs=0.01)
-    assert np.array(told["x"]) == pytest.approx(film.land.x, abs=0.06)
+    points, corners = (
+        np.frombuffer(base64.b64decode(told["ground"][n]), "<i4") for n in ("points", "corners")
+    )
+    points, corners = points.reshape(-1, 3) / 100, corners.reshape(-1, 3)
+    near = (np.abs(points[:, :2] - told["middle"]) < told["wide"] - 1).all(axis=1)
+    assert near.sum() > 1000
+    assert points[near, 2] == pytest.approx(film.ground.height(*points[near, :2].T), abs=0.02)
+    assert corners.max() == len(points) - 1
+    assert told["isLaid"]
     trees = np.reshape(told["trees"], (-1, 7))
     assert trees[:, :3] / 10 == pytest.approx(film.trees.places, abs=0.06)
     assert trees[:, 5].tolist() == film.trees.looks.tolist()

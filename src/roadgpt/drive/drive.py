@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 Mishap = Literal["fell", "rolled", "crashed", "sank"]
-"""What ends a drive beside the road: the car falls off a road that floats or off a bridge, rolls over, is stopped
-by a slope, or drives into water."""
+"""What ends a drive beside the road: the car falls off a road that floats or off a bridge, rolls over, is
+stopped by a slope, or drives into water."""
 Ended = Literal["goal", "out_of_lane", Mishap, "stuck", "timeout", "collision"]
 COLUMNS = {
     "time": "s, since the start",

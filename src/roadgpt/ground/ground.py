@@ -164,8 +164,7 @@ class Ground:
         return ~np.isnan(self.water_level(x, y))
 
     def water_level(self, x: Array, y: Array) -> Array:
-        """Returns the heights ``(n,)`` of the surface of water that is there or near, NaN where there is none.
-        """
+        """Returns the heights ``(n,)`` of the surface of water, also near its edge; NaN where none is near."""
         level = self.relief.water
         i = np.rint((np.asarray(x, float) - self.relief.x) / self.relief.cell).astype(int)
         j = np.rint((np.asarray(y, float) - self.relief.y) / self.relief.cell).astype(int)

@@ -37,11 +37,11 @@ class GroundMesh:
         return np.asarray(found / np.linalg.norm(found, axis=1, keepdims=True))
 
 
-def mesh_of(ground: Ground) -> GroundMesh:
-    """Returns the ground from the rims of the roads to the horizon."""
+def mesh_of(ground: Ground, to_horizon: bool = True) -> GroundMesh:
+    """Returns the ground from the rims of the roads to the horizon, or only to the border of its grid."""
     rings = ground.pavement.rims
     corners = _corners(ground)
-    far = ground.relief.beyond
+    far = ground.relief.beyond if to_horizon else np.empty((0, 3))
     for _ in range(ROUNDS):
         rims = np.concatenate(rings) if rings else np.empty((0, 3))
         points = np.concatenate([rims, corners, far])

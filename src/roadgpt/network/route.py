@@ -97,7 +97,7 @@ def _passage(network: Network, one: Leg, other: Leg, start: float, end: float) -
     return Passage(start, end, entered, first.incoming, last.outgoing, (*ends[at:], *ends[:at]))
 
 
-def ground_of(network: Network) -> Area:
+def area_with_verges(network: Network) -> Area:
     """Returns the paved area of a network, widened by its usual shoulder, with the wider ones of roads."""
     area, shoulder = network.paved, network.shoulder
     if shoulder <= 0:
@@ -140,7 +140,7 @@ def _shoulders_on_ground(route: "Route", profile: Profile) -> tuple[CubicProfile
     """Returns the widths in metres of the left and the right shoulder of a route, along its stations. Outside
     the ``windows``, the shoulders are as wide as those of the roads; inside, they reach to the edge of the
     ground."""
-    ground = ground_of(route.network)
+    ground = area_with_verges(route.network)
     rows: tuple[list[tuple[float, Cubic]], list[tuple[float, Cubic]]] = ([], [])
     last = 0.0
     for low, high in windows(route.passages, route.length):

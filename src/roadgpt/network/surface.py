@@ -80,8 +80,8 @@ def stations_of(member: NetworkRoad) -> Array:
     all lines beside it, and at most ``LONGEST`` apart."""
     s = stations(member.road, member.profile.reach)
     parts = np.maximum(1, np.ceil(np.diff(s) / LONGEST)).astype(int)
-    steps = np.repeat(np.diff(s) / parts, parts)
-    return np.asarray(np.minimum(np.r_[0.0, np.cumsum(steps)], member.road.length))
+    place = np.r_[0, np.cumsum(parts)]
+    return np.interp(np.arange(place[-1] + 1), place, s)
 
 
 def pavement_of(network: Network) -> Pavement:

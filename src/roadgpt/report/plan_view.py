@@ -21,7 +21,7 @@ from roadgpt.network import Network, network_of, only_road
 from roadgpt.network.markings import JunctionSign, arrows, between_crosswalks, signs, strokes
 from roadgpt.network.paved import Area
 from roadgpt.network.paved import stations_of as stations_on
-from roadgpt.network.route import ground_of
+from roadgpt.network.route import area_with_verges
 from roadgpt.network.surface import NetworkSurface
 from roadgpt.report.canvas import GRASS, HALO, INK, POINTS, SOFT, inches
 from roadgpt.road import Edges, Road, World
@@ -48,7 +48,7 @@ def draw_network(axes: Axes, route: Road, network: Network, per_inch: float) -> 
     number of metres per inch of the picture."""
     surface = NetworkSurface.of(network)
     if surface.shoulder > 0:
-        _fill(axes, ground_of(network), VERGE, 1)
+        _fill(axes, area_with_verges(network), VERGE, 1)
     _fill(axes, network.paved, ASPHALT, 2)
     for area in surface.areas:
         for island in area.kerbed:

@@ -19,7 +19,8 @@ from roadgpt.reading import strictly
 Outcome = Literal["PASS", "FAIL", "UNAVOIDABLE"]
 """UNAVOIDABLE: a collision that no driver could have avoided, which is no failure."""
 Cause = Literal[
-    "out of lane", "fell", "rolled", "crashed", "sank", "stuck", "timeout", "collision", "wrong turn", "wrong way", "stop line",
+    "out of lane", "fell", "rolled", "crashed", "sank", "stuck", "timeout", "collision", "wrong turn",
+    "wrong way", "stop line",
     "red light", "failure to yield",
 ]  # fmt: skip
 DEPARTURES: tuple[Cause, ...] = ("out of lane", "fell", "rolled", "crashed", "sank")

@@ -130,7 +130,7 @@ def meshes(road: Road, world: World, poses: Poses | None = None) -> list[Triangl
         out.append(_path(road, stations_of(only) if only else road.sample().s, world, poses))
     ground = ground_around(road, world)
     if ground.pavement.rims:  # without shoulders, the road floats
-        out.append(_land("ground", "grass", mesh_of(ground)))
+        out.append(_land("ground", "grass", mesh_of(ground, to_horizon=False)))
         if len((water := water_of(ground)).triangles):
             out.append(_land("water", "water", water))
     return out
@@ -209,7 +209,6 @@ def _painted(network: Network) -> list[TriangleMesh]:
 
 
 def _land(name: str, material: str, mesh: GroundMesh) -> TriangleMesh:
-    """Returns the ground or its water, without what is only for the horizon."""
     return TriangleMesh(name, material, mesh.points, mesh.normals, mesh.points[:, :2], mesh.triangles)
 
 

@@ -30,7 +30,7 @@ from roadgpt.ground.mesh import GroundMesh, mesh_of, water_of
 from roadgpt.network import network_of, only_road
 from roadgpt.network.markings import PaintedStroke, arrows, between_crosswalks, signs, strokes
 from roadgpt.network.paved import Area
-from roadgpt.network.route import ground_of
+from roadgpt.network.route import area_with_verges
 from roadgpt.network.surface import JunctionSurface, NetworkSurface, free_ends, triangulated
 from roadgpt.report.birds_eye import minor_places_of, places_of
 from roadgpt.report.canvas import INK, LETTERS, OUTCOMES, SEVERE, VERMILLION, origin, outcome_of
@@ -340,7 +340,7 @@ def network_values(route: Road, world: World) -> dict[str, Any]:
             for face in faces_of(sign)
         ],
         "plan": {
-            "ground": _rings(ground_of(network)) if parts.shoulder > 0 else [],
+            "ground": _rings(area_with_verges(network)) if parts.shoulder > 0 else [],
             "paved": _rings(network.paved),
             "kerbed": [ring for area in parts.areas for island in area.kerbed for ring in _rings(island)],
             "green": [ring for area in parts.areas for island in area.green for ring in _rings(island)]

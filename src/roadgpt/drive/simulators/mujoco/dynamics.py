@@ -627,9 +627,7 @@ def hull_forces(mj: Any, car: Any, ground: Any, station: float, hull: FloatArray
         if ground.land.heights.shape[0] > 0:
             deepest = SOLID
             if beyond > 0.0:
-                height, normal = land_contact(
-                    ground.land, px, py, height, slope, lateral, heading, beyond
-                )
+                height, normal = land_contact(ground.land, px, py, height, slope, lateral, heading, beyond)
         elif beyond > 0.0:
             continue
         nx, ny, nz = normal

@@ -50,7 +50,9 @@ CONTROL = STEPS * STEP
 FALLEN = 2.0  # m below the road: from there RoadGPT's car cannot return to its floating road
 MISHAPS: tuple[Mishap | None, ...] = (None, "fell", "rolled", "crashed", "sank")
 FELL, ROLLED, CRASHED, SANK = range(1, 5)
-SHOCK = 80.0  # m/s^2, mean of a control step, beside the road: no tyre brakes that hard, a slope stopped the car
+SHOCK = (
+    80.0  # m/s^2, mean of a control step, beside the road: no tyre brakes that hard, a slope stopped the car
+)
 NO_WATER = -1e6  # m
 FALLEN_OVER = 0.5  # cosine of 60 degrees between car and road: a saloon that leans more overturns
 _ROW = {name: place for place, name in enumerate(COLUMNS)}
