@@ -45,7 +45,8 @@ def test_one_wide_strip_changes_the_ground_of_its_own_road_only(seed: int) -> No
 def test_the_ground_meets_a_wide_strip_and_leaves_all_other_roads_alone() -> None:
     network = map_route(1).network
     wide = with_wide_strips(network, network.roads_outside[-1].id)
-    before, after = (ground_around(Route.along(each, []), World().changed(ground="hilly:1")) for each in (network, wide))
+    world = World().changed(ground="hilly:1")
+    before, after = (ground_around(Route.along(each, []), world) for each in (network, wide))
     road = wide.roads_outside[-1].road
     s = np.linspace(1.0, road.length - 1.0, 20)
     for t in (-30.0, 30.0):

@@ -66,7 +66,8 @@ class Pavement:
         points = np.column_stack([flat, np.where(np.isnan(heights), corners[nearest, 2], heights)])
         points[away < SAME] = corners[nearest[away < SAME]]
         ends = np.cumsum([len(ring) for ring in outlines])[:-1]
-        return cls(triangles, tuple(np.split(points, ends)))
+        rims = (ring[np.any(ring != np.roll(ring, 1, axis=0), axis=1)] for ring in np.split(points, ends))
+        return cls(triangles, tuple(ring for ring in rims if len(ring) > 2))
 
     @cached_property
     def segments(self) -> Array:
@@ -164,7 +165,7 @@ class Ground:
         return ~np.isnan(self.water_level(x, y))
 
     def water_level(self, x: Array, y: Array) -> Array:
-        """Returns the heights ``(n,)`` of the surface of water, also near its edge; NaN where none is near."""
+        """Returns the heights ``(n,)`` of the surface of water, also near its edge, else NaN."""
         level = self.relief.water
         i = np.rint((np.asarray(x, float) - self.relief.x) / self.relief.cell).astype(int)
         j = np.rint((np.asarray(y, float) - self.relief.y) / self.relief.cell).astype(int)
