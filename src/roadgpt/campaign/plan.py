@@ -103,7 +103,8 @@ class Plan(PlanChoices):
         a driver's file, or sends the user's API key to a server, that only this file names."""
         chat = self.chat and self.chat.came_with(file)
         drivers = tuple(driver_from_file(driver, file) for driver in self.drivers)
-        return self.model_copy(update={"chat": chat, "drivers": drivers})
+        world = self.world.with_heights_in(Path(str(file)).parent)
+        return self.model_copy(update={"chat": chat, "drivers": drivers, "world": world})
 
     @property
     def asks_a_model(self) -> bool:

@@ -46,6 +46,7 @@ from roadgpt.reading import json_of
 from roadgpt.road import Design, Road
 from roadgpt.run import Request, Run
 from roadgpt.run.atomic import refuse_links, to_bytes
+from roadgpt.run.folder import keep_ground
 from roadgpt.run.model import permissions
 from roadgpt.run.store import connected
 from roadgpt.run.versions import Versions, joined, still
@@ -691,6 +692,8 @@ class Store(Record):
         path = folder / STORE
         draft = path.with_name(f"{path.name}.part")
         with refusals(folder):
+            if cells:
+                keep_ground(cells[0].request.world, folder)
             draft.unlink(missing_ok=True)
             db = sqlite3.connect(draft, isolation_level=None)
             meta = {"plan": plan, "versions": json.dumps([*versions.values()]), "finished": ""}

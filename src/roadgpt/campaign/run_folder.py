@@ -37,6 +37,7 @@ from roadgpt.run.folder import (
     Draw,
     finished,
     finished_run_in,
+    keep_ground,
     new_folder,
     read_card,
     remove_run,
@@ -63,6 +64,7 @@ class RunWriter:
         """Writes the folder of a Run, and returns its test as a FinishedTest."""
         with writing(self.folders[cell]):
             write_run_folder(run, self.folders[cell], self.draw)
+            keep_ground(run.world, self.folders[cell])
         kept = None if self.meter is None else run
         return FinishedTest.of(run, task, test_file=test_text(run), entries=_entries(run), run=kept)
 

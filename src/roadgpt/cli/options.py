@@ -62,6 +62,11 @@ def path_guard(value: str, place: str) -> str:
     return place_guard(value, place)
 
 
+def ground_guard(value: str, place: str) -> str:
+    """Refuses a file of heights where ``path_guard`` does."""
+    return path_guard(value, place) if Path(value.partition("@")[0]).suffix else ""
+
+
 def _plugin_guard(kind: str, value: str, place: str) -> str:
     from roadgpt.chat import asks_a_model
 
@@ -397,6 +402,25 @@ def recording(value: str) -> str:
     return value
 
 
+def ground(value: str) -> str:
+    """Returns the value of --ground: a kind of land, or the name of land in a file, with its heights."""
+    from roadgpt.ground.given import NAME
+    from roadgpt.road.world import ground_in
+
+    path, digest = found.groups() if (found := NAME.fullmatch(value)) else (value, "")
+    if not Path(path).suffix:
+        try:
+            return ground_in(value, str)
+        except ValueError as error:
+            raise click.BadParameter(f"{error}, or a file of heights (.png, .asc, .npy, .tif)") from error
+    from roadgpt.ground.files import read_ground
+
+    made = read_ground(Path(path))
+    if digest and not made.endswith(digest):
+        raise click.BadParameter(f"{path} holds other land than '{value}'; leave '@{digest}' out to take it")
+    return made
+
+
 def drivers(value: str) -> tuple[str, ...]:
     """Returns the drivers in a value of --drivers, separated by commas, as ``driver`` does."""
     is_file = Path(f"{value.rpartition('.py')[0]}.py").is_file()  # whose path may have commas
@@ -432,9 +456,10 @@ picture_formats = listed(_picture_format)
 _files = partial(Option, heading=Heading.FILES)
 GUARDS: dict[str, Any] = {
     "reader": reader_guard, "designer": designer_guard, "driver": driver_guard, "tracks": path_guard,
+    "ground": ground_guard,
 }  # fmt: skip
 KINDS: dict[str, Any] = {
-    "driver": driver, "tracks": recording, "lanes": lanes, "bank": bank, "scene": scene,
+    "driver": driver, "tracks": recording, "lanes": lanes, "bank": bank, "scene": scene, "ground": ground,
     "scenario": scenario,
 }  # fmt: skip
 """What refuses and what converts the values of fields, where their types do not say it all."""
@@ -513,7 +538,7 @@ def _of_models() -> dict[str, tuple[Option, ...]]:
         each for part in (Site, CrossSection, Limits, World) for each in of_model(part, Heading.SITE, "world")
     ]
     order = (
-        "map_size", "scene", "speed_limit", "oracle", "oob_tolerance", "lane_departure", "lanes",
+        "map_size", "scene", "ground", "speed_limit", "oracle", "oob_tolerance", "lane_departure", "lanes",
         "lane_width", "lane_width_end", "bank", "shoulder", "friction",
     )  # fmt: skip
     world = tuple(named([ORACLE, *of_world], *order))

@@ -45,6 +45,7 @@ class Layers(NamedTuple):
     starts: Integers  # of each bucket, in ``members``: one more than there are buckets
     members: Integers  # triangles
     slope: float
+    covers: Array  # x, y, z of the corners of what land covers tunnels, (k, 9)
 
 
 @inlined
@@ -224,6 +225,10 @@ def land_at(of: Layers, x: float, y: float) -> float:
     """Returns the height of the ground at one point beside the roads."""
     rows, columns = of.heights.shape
     found = cubic_at(of.relief, of.relief_x, of.relief_y, of.relief_cell, x, y)
+    for k in range(len(of.covers)):
+        roof = _height_on(of.covers[k], x, y)
+        if not math.isnan(roof):
+            return max(found, roof)
     i, j = math.floor((x - of.x) / of.cell), math.floor((y - of.y) / of.cell)
     if i < 0 or j < 0 or i >= columns - 1 or j >= rows - 1:
         return found

@@ -4,9 +4,9 @@ On carriageways, junctions and verges, the height is that of the road's own surf
 up or down to the land."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,24 @@ def _left_of(ring: Array) -> Array:
     return np.asarray(left / np.maximum(np.hypot(*left.T), 1e-9)[:, None])
 
 
+class Span(NamedTuple):
+    """A part of a road on a bridge or in a tunnel: there, the ground does not meet the road."""
+
+    kind: Literal["bridge", "tunnel"]
+    road: int  # the id of the road
+    start: float  # station in metres
+    end: float
+
+
+class Portal(NamedTuple):
+    """The mouth of a tunnel."""
+
+    left: Array  # the corner (3,) of the road's surface on the left of someone who drives in, in metres
+    right: Array
+    ahead: Array  # unit vector (2,) into the tunnel
+    high: float  # m from the road to the land above the tunnel
+
+
 @dataclass(frozen=True, eq=False)
 class Pavement:
     """The surface of all roads that lie on the ground, with their verges, in metres."""
@@ -43,13 +61,17 @@ class Pavement:
     come first and count."""
     rims: tuple[Array, ...]
     """The outlines of the whole surface, closed rings ``(n, 3)``; the ground is on the right of each."""
+    portals: tuple[Portal, ...] = ()
+    covers: Array = field(default_factory=lambda: np.empty((0, 3, 3)))
+    """The corners of triangles ``(k, 3, 3)`` over tunnels: the land is not lower there."""
+    spans: tuple[Span, ...] = ()
 
     @classmethod
-    def of(cls, triangles: Array, outlines: Sequence[Array]) -> "Pavement":
+    def of(cls, triangles: Array, outlines: Sequence[Array], **more: Any) -> "Pavement":
         """Returns the surface of triangles ``(m, 3, 3)`` with these outlines, rings ``(n, 2)`` that get the
-        heights of the surface."""
+        heights of the surface; ``more`` are the other fields."""
         if not outlines:
-            return cls(triangles, ())
+            return cls(triangles, (), **more)
         flat = np.concatenate(outlines)
         low, high = flat.min(axis=0) - 1.0, flat.max(axis=0) + 1.0
         side = max(FINEST, float(np.sqrt(np.prod(high - low) / MOST_CELLS)))
@@ -58,7 +80,9 @@ class Pavement:
         x, y = low.tolist()
         starts, members = grading.buckets(plain, x, y, side, rows, columns)
         none, no = np.empty((rows, columns)), np.empty((0, 0), np.int32)
-        layers = Layers(x, y, side, none, no, no, none, 0.0, 0.0, 1.0, none, plain, starts, members, SLOPE)
+        layers = Layers(
+            x, y, side, none, no, no, none, 0.0, 0.0, 1.0, none, plain, starts, members, SLOPE, none
+        )
         inwards = np.concatenate([_left_of(ring) for ring in outlines])
         heights = grading.roads_at(layers, *(flat + INSIDE * inwards).T)
         corners = triangles.reshape(-1, 3)
@@ -67,13 +91,19 @@ class Pavement:
         points[away < SAME] = corners[nearest[away < SAME]]
         ends = np.cumsum([len(ring) for ring in outlines])[:-1]
         rims = (ring[np.any(ring != np.roll(ring, 1, axis=0), axis=1)] for ring in np.split(points, ends))
-        return cls(triangles, tuple(ring for ring in rims if len(ring) > 2))
+        return cls(triangles, tuple(ring for ring in rims if len(ring) > 2), **more)
 
     @cached_property
     def segments(self) -> Array:
-        """The segments of all rims, ``(n, 6)``."""
+        """The segments of all rims at which slopes begin, ``(n, 6)``: all but those at portals."""
         parts = [np.hstack([ring, np.roll(ring, -1, axis=0)]) for ring in self.rims]
-        return np.concatenate(parts) if parts else np.empty((0, 6))
+        found = np.concatenate(parts) if parts else np.empty((0, 6))
+        for portal in self.portals:
+            middle = (found[:, :3] + found[:, 3:]) / 2 - (portal.left + portal.right) / 2
+            across = (found[:, :2] - found[:, 3:5]) @ portal.ahead
+            at = np.hypot(*middle[:, :2].T) < np.hypot(*(portal.left - portal.right)[:2]) / 2 + SAME
+            found = found[~(at & (np.abs(across) < 1e-2) & (np.abs(middle[:, :2] @ portal.ahead) < 0.05))]
+        return found
 
 
 class Earthworks(NamedTuple):
@@ -113,12 +143,14 @@ class Ground:
         layers = Layers(
             *place, none, no, no, relief.heights, relief.x, relief.y, relief.cell,
             pavement.segments, triangles, starts, members, slope,
+            np.ascontiguousarray(pavement.covers.reshape(-1, 9)),
         )  # fmt: skip
-        land = grading.resampled(np.empty(shape), layers)
+        roofs = grading.on_roads(layers.covers, *place, *shape)
+        land = np.fmax(grading.resampled(np.empty(shape), layers), roofs)
         roads = grading.on_roads(triangles, *place, *shape)
         cuts, top = grading.spread(pavement.segments, land, roads, *place, slope, 1.0)
         fills, floor = grading.spread(pavement.segments, land, roads, *place, slope, -1.0)
-        graded = np.minimum(np.maximum(land, floor), top)
+        graded = np.where(np.isnan(roofs), np.minimum(np.maximum(land, floor), top), land)
         heights = np.where(np.isnan(roads), graded, roads)
         return cls(relief, pavement, layers._replace(heights=heights, cuts=cuts, fills=fills))
 

@@ -9,10 +9,12 @@ from numpy.typing import NDArray
 from scipy.spatial import Delaunay, cKDTree
 
 from roadgpt.geometry.curve import Array
-from roadgpt.ground.ground import Ground
+from roadgpt.ground.ground import Ground, Portal
 
 SIZES = ((32.0, np.inf), (16.0, 130.0), (8.0, 60.0), (4.0, 24.0), (2.0, 7.0))
 """Side of the squares in metres, and the distance from a road up to which they are divided so far."""
+LINTEL = 1.5  # m of land above the mouth of a tunnel that is one strip
+THIN = 0.2  # m from the mouth of a tunnel to the land above it
 WATERSIDE = 8.0  # m, side of the squares beside water
 NEAREST = 0.55  # of a square's side; a corner that is nearer to a rim is left out
 ROUNDS = 6  # of halving those segments of rims that no triangle has as a side
@@ -39,17 +41,38 @@ class GroundMesh:
 
 def mesh_of(ground: Ground, to_horizon: bool = True) -> GroundMesh:
     """Returns the ground from the rims of the roads to the horizon, or only to the border of its grid."""
-    rings = ground.pavement.rims
+    rings, portals = ground.pavement.rims, ground.pavement.portals
     corners = _corners(ground)
+    for portal in portals:
+        corners = corners[~_is_before(corners, portal, LINTEL)]
+    corners = np.concatenate([*(_lintel(portal, ground) for portal in portals), corners])
     far = ground.relief.beyond if to_horizon else np.empty((0, 3))
     for _ in range(ROUNDS):
         rims = np.concatenate(rings) if rings else np.empty((0, 3))
         points = np.concatenate([rims, corners, far])
         triangles = _triangles(points, ground)
+        for portal in portals:  # which is open
+            triangles = triangles[~_is_before(points, portal, 2 * THIN)[triangles].all(axis=1)]
         if not (halved := _with_missing_halved(rings, triangles)):
             break
         rings = halved
     return GroundMesh(points, triangles)
+
+
+def _is_before(points: Array, portal: Portal, reach: float) -> NDArray[np.bool_]:
+    """Returns whether points lie within ``reach`` metres of the line across the mouth of a tunnel."""
+    off = points[:, :2] - (portal.left + portal.right)[:2] / 2
+    half = np.hypot(*(portal.left - portal.right)[:2]) / 2
+    across = np.abs(off @ [-portal.ahead[1], portal.ahead[0]])
+    return np.asarray((np.abs(off @ portal.ahead) < reach) & (across < half + THIN))
+
+
+def _lintel(portal: Portal, ground: Ground) -> Array:
+    """Returns points ``(n, 3)`` of the land just above the mouth of a tunnel."""
+    n = int(np.hypot(*(portal.left - portal.right)[:2]) / THIN) + 2  # closer together than they are to it
+    line = portal.left + (portal.right - portal.left) * np.linspace(0.0, 1.0, n)[:, None]
+    flat = line[:, :2] + THIN * portal.ahead
+    return np.column_stack([flat, np.maximum(ground.beside(*flat.T), line[:, 2] + portal.high)])
 
 
 def water_of(ground: Ground) -> GroundMesh:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 from scipy.spatial import cKDTree
 
+from roadgpt.brief.amount import span
 from roadgpt.brief.scene import Land
 from roadgpt.compiled import compiled, inlined
 from roadgpt.geometry.curve import Array
@@ -27,6 +28,16 @@ SHORE = 1.2  # m, least height of any road above water near it
 DEEP = 3.0  # m of water
 BANK, BEACH = 0.25, 0.12  # slopes below and above the edge of water
 STRAIGHT_ON = 20.0  # m between the points by which a way is continued before its start and behind its end
+
+
+LENGTHS = {"bridge": 50.0, "tunnel": 80.0, "cutting": 60.0, "embankment": 60.0}
+"""Usual lengths in metres of what words give no length."""
+CROSSED = {"valley": 60.0, "ridge": 60.0, "river": 30.0, "lake": 90.0, "coast": 60.0}
+OVER: dict[str, tuple[str, ...]] = {
+    "valley": ("bridge", "embankment"), "river": ("bridge",), "lake": ("bridge",), "coast": ("bridge",),
+    "ridge": ("tunnel", "cutting"),
+}  # fmt: skip
+"""What a way crosses something on, or in."""
 
 
 @dataclass(frozen=True)
@@ -133,6 +144,68 @@ class Way:
         return low - MARGIN, high + MARGIN
 
 
+@dataclass(frozen=True)
+class Stretch:
+    """A part of a way that leads through or along something of the landscape, in metres along the way."""
+
+    land: Land
+    start: float
+    end: float
+    of: float  # the length of the way
+    structure: Land | None = None  # the bridge or the tunnel by which the way crosses it
+
+    @property
+    def middle(self) -> float:
+        """The station of its middle in metres."""
+        return (self.start + self.end) / 2
+
+    @property
+    def length(self) -> float:
+        """Its length in metres."""
+        return self.end - self.start
+
+    @property
+    def is_crossed(self) -> bool:
+        """Whether the way leads across it."""
+        return crosses(self.land)
+
+
+def crosses(land: Land) -> bool:
+    """Returns whether a way leads across something of the landscape, and has a bridge, tunnel, cutting or
+    embankment there."""
+    return land.kind in LENGTHS or (land.lie in ("across", "through") and land.kind in CROSSED)
+
+
+def stretches(lands: Sequence[Land], length: float) -> tuple[Stretch, ...]:
+    """Returns where a way of this length leads along or across each of the lands, in their order.
+
+    A bridge belongs to the valley or the water that is named beside it, and a tunnel to the ridge. A river
+    is crossed on a bridge, also where none is named. What is crossed shares the way evenly."""
+    crossed: list[tuple[Land, Land | None]] = []
+    for land in lands:
+        if not crosses(land):
+            continue
+        for _ in range(max(1, round(span(land.count).lo))):
+            last, own = crossed[-1] if crossed else (None, None)
+            if last is not None and own is None and land.kind in OVER.get(last.kind, ()):
+                crossed[-1] = last, land
+            elif last is not None and own is None and last.kind in OVER.get(land.kind, ()):
+                crossed[-1] = land, last
+            else:
+                crossed.append((land, None))
+    found = [Stretch(land, 0.0, length, length) for land in lands if not crosses(land)]
+    for number, (land, structure) in enumerate(crossed):
+        if structure is None and land.kind in ("river", "lake", "coast"):
+            structure = Land(kind="bridge")
+        named = structure or land
+        said = span(named.length).lo if named.length else None
+        usual = LENGTHS[named.kind] if named.kind in LENGTHS else CROSSED[named.kind]
+        long = min(said or usual, 0.7 * length / len(crossed))
+        middle = (number + 0.5) * length / len(crossed)
+        found.append(Stretch(land, middle - long / 2, middle + long / 2, length, structure))
+    return tuple(found)
+
+
 @dataclass(frozen=True, eq=False)
 class _Places:
     """Where points lie from the way and the roads."""
@@ -162,7 +235,7 @@ class _Places:
 
 
 def made(
-    way: Way, kind: Kind, lands: Sequence[Land], seed: int, box: tuple[Array, Array] | None = None
+    way: Way, kind: Kind, stretches: Sequence[Stretch], seed: int, box: tuple[Array, Array] | None = None
 ) -> Relief:
     """Returns land of a kind around a way, with valleys, ridges and water.
 
@@ -171,10 +244,10 @@ def made(
     x, y = (np.arange(low[i], high[i] + CELL, CELL) for i in (0, 1))
     places = _Places.of(*np.meshgrid(x, y), way)
     base = _base(places, way, x, y)
-    heights, water = _shaped(places, base, way, kind, lands, seed)
-    beyond = (
-        _beyond(low, high, float(base.mean()), way, kind, lands, seed) if box is None else np.empty((0, 3))
-    )
+    heights, water = _shaped(places, base, way, kind, stretches, seed)
+    beyond = np.empty((0, 3))
+    if box is None:
+        beyond = _beyond(low, high, float(base.mean()), way, kind, stretches, seed)
     return Relief(float(x[0]), float(y[0]), CELL, heights, water, beyond)
 
 
@@ -199,11 +272,11 @@ def _rings(low: Array, high: Array) -> Array:
 
 
 def _beyond(
-    low: Array, high: Array, level: float, way: Way, kind: Kind, lands: Sequence[Land], seed: int
+    low: Array, high: Array, level: float, way: Way, kind: Kind, stretches: Sequence[Stretch], seed: int
 ) -> Array:
     flat = _rings(low, high)
     places = _Places.of(flat[:, 0], flat[:, 1], way)
-    heights, water = _shaped(places, np.full(len(flat), level), way, kind, lands, seed)
+    heights, water = _shaped(places, np.full(len(flat), level), way, kind, stretches, seed)
     far = np.repeat(HORIZON, BEARINGS)
     rise = LOOKS[kind].far * (0.5 + noise(flat[:, 0], flat[:, 1], 2600.0, 3, seed + 1))
     heights = heights + np.where(np.isnan(water), rise * smooth(far, 0.0, 4000.0), 0.0)
@@ -238,7 +311,7 @@ def _pulled(values: Array, known: Array) -> Array:
 
 
 def _shaped(
-    places: _Places, base: Array, way: Way, kind: Kind, lands: Sequence[Land], seed: int
+    places: _Places, base: Array, way: Way, kind: Kind, stretches: Sequence[Stretch], seed: int
 ) -> tuple[Array, Array]:
     look = LOOKS[kind]
     hills = noise(places.x, places.y, look.length, 4, seed)
@@ -250,9 +323,27 @@ def _shaped(
         lean = np.where(uphill > 0, 0.5, -0.4) * np.minimum(np.maximum(places.free - FREE, 0.0), 160.0)
         heights = heights + _softened(lean)
     water = np.full(heights.shape, np.nan)
-    for number, land in enumerate(lands):
-        heights, water = _with_land(heights, water, land, number, len(lands), places, base, way, seed)
+    sides = _free_sides(stretches, seed)
+    for number, (stretch, side) in enumerate(zip(stretches, sides, strict=True)):
+        wave = noise(places.x, places.y, 160.0, 3, seed + 11 * number + 3)
+        if stretch.land.kind in ("lake", "coast", "river"):
+            heights, water = _with_water(heights, water, stretch, side, places, base, way, wave)
+        else:
+            heights = heights + _rise(stretch, side, places, wave)
     return heights, water
+
+
+def _free_sides(stretches: Sequence[Stretch], seed: int) -> list[float]:
+    """Returns the side of each stretch: 1 left, -1 right. Where none is said, water and ridges take turns."""
+    found, turn = [], _chosen(seed)
+    for stretch in stretches:
+        said = {"left": 1.0, "right": -1.0}.get(stretch.land.side or "")
+        if said is None and stretch.land.kind in ("lake", "coast", "river", "ridge"):
+            said, turn = turn, -turn
+        elif said is not None:
+            turn = -said
+        found.append(said or turn)
+    return found
 
 
 def _softened(rise: Array) -> Array:
@@ -265,74 +356,75 @@ def _chosen(seed: int) -> float:
     return 1.0 if np.random.default_rng([seed, 5]).random() < 0.5 else -1.0
 
 
-def _with_land(
-    heights: Array, water: Array, land: Land, number: int, count: int, places: _Places, base: Array, way: Way,
-    seed: int,
-) -> tuple[Array, Array]:  # fmt: skip
-    """Returns heights and water with one more valley, ridge or water. What the way leads across or through
-    is in the middle of its part of the way: those that cross it share the way."""
-    side = {"left": 1.0, "right": -1.0}.get(land.side or "", _chosen(seed + number))
-    beside = places.side == side
-    middle = (number + 0.5) / count
-    length = len(way.points) * _spacing(way)
-    along = (places.share - middle) * length  # m
-    off = places.away
-    wave = noise(places.x, places.y, 160.0, 3, seed + 11 * number + 3)
-    grown = smooth(places.free, FREE, 60.0)
-    crossed = land.lie in ("across", "through")
+def _rise(stretch: Stretch, side: float, places: _Places, wave: Array) -> Array:
+    """Returns by how much a valley, a ridge, a cutting or an embankment raises the land."""
+    land, free = stretch.land, places.free
+    along = places.share * stretch.of - stretch.middle
+    half = max(stretch.length / 2, 12.0)
+    window = 1.0 - smooth(np.abs(along), half * 0.6, half + 25.0)
+    if land.kind == "cutting":
+        return np.asarray(7.0 * window * smooth(free, 3.0, 22.0))
+    if land.kind == "embankment":
+        return np.asarray(-6.0 * window * smooth(free, 3.0, 30.0))
+    if land.kind == "bridge":  # over a hollow of its own
+        return np.asarray(-11.0 * (1.0 - smooth(np.abs(along), half * 0.5, half + 12.0)))
+    if land.kind == "tunnel":
+        return np.asarray(18.0 * (1.0 - smooth(np.abs(along), half * 0.6, half + 22.0)))
+    is_bridged = stretch.structure is not None and stretch.structure.kind in ("bridge", "tunnel")
+    if land.kind == "valley" and stretch.is_crossed:
+        if is_bridged:
+            return np.asarray(-16.0 * (1.0 - smooth(np.abs(along), half * 0.4, half + 20.0)))
+        return np.asarray(-9.0 * window * smooth(free, 4.0, 24.0))
     if land.kind == "valley":
-        if crossed:
-            sunk = 14.0 * np.exp(-((along / 35.0) ** 2)) * smooth(off, 5.0, 25.0)
-            return heights - sunk, water
-        rise = 90.0 * np.tanh(np.maximum(places.free - 18.0, 0.0) / 150.0)
-        rise = rise * (1.0 + 0.35 * wave)
-        return heights + (rise if land.side is None else _softened(np.where(beside, -rise / 2, 0.0))), water
+        rise = 90.0 * np.tanh(np.maximum(free - 18.0, 0.0) / 150.0) * (1.0 + 0.35 * wave)
+        return rise if land.side is None else _softened(np.where(places.side == side, -rise / 2, 0.0))
+    if land.kind == "ridge" and stretch.is_crossed:
+        if is_bridged:
+            return np.asarray(22.0 * (1.0 - smooth(np.abs(along), half * 0.6, half + 22.0)))
+        return np.asarray(13.0 * window * smooth(free, 3.0, 26.0))
+    if land.kind == "ridge" and land.lie == "along" and land.side is None:
+        return np.asarray(-45.0 * np.tanh(np.maximum(free - 12.0, 0.0) / 90.0))
     if land.kind == "ridge":
-        if crossed:
-            return heights + 16.0 * np.exp(-((along / 40.0) ** 2)) * smooth(off, 4.0, 20.0), water
-        crest = 55.0 * np.exp(-(((places.away - 85.0) / 45.0) ** 2)) * (1.0 + 0.3 * wave) * grown
-        if land.lie == "along" and land.side is None:
-            return heights - 45.0 * np.tanh(np.maximum(places.free - 12.0, 0.0) / 90.0), water
-        return heights + _softened(np.where(beside, crest, 0.0)), water
-    if land.kind in ("lake", "coast", "river"):
-        return _with_water(heights, water, land, beside, along, length, middle, places, base, way, wave)
-    return heights, water
-
-
-def _spacing(way: Way) -> float:
-    steps = np.hypot(*np.diff(way.points[:, :2], axis=0).T)
-    return float(steps.mean()) if len(steps) else 1.0
+        crest = 55.0 * np.exp(-(((places.away - 85.0) / 45.0) ** 2)) * (1.0 + 0.3 * wave)
+        return _softened(np.where(places.side == side, crest * smooth(free, FREE, 60.0), 0.0))
+    return np.zeros_like(free)
 
 
 def _with_water(
-    heights: Array, water: Array, land: Land, beside: NDArray[np.bool_], along: Array, length: float,
-    middle: float, places: _Places, base: Array, way: Way, wave: Array,
+    heights: Array, water: Array, stretch: Stretch, side: float, places: _Places, base: Array, way: Way,
+    wave: Array,
 ) -> tuple[Array, Array]:  # fmt: skip
     """Returns heights and water with a lake, a river or a coast beside the way or across it."""
-    if land.lie in ("across", "through"):
-        wide = {"river": 9.0, "lake": 45.0, "coast": 45.0}[land.kind]
-        inside = 1.0 - np.abs(along + 14.0 * wave * smooth(off := places.away, 20.0, 80.0)) / wide
-        inside = np.where(off < 220.0 if land.kind == "lake" else True, inside, -1.0)
-        near = way.points[np.abs(np.linspace(0, 1, len(way.points)) - middle) * length <= 2 * wide]
-        level = np.full(heights.shape, float(near[:, 2].min()) - 5.0)
+    land = stretch.land
+    along = places.share * stretch.of - stretch.middle
+    stations = np.linspace(0.0, stretch.of, len(way.points))
+    if stretch.is_crossed:
+        wide = {"river": 8.0, "lake": 40.0, "coast": 40.0}[land.kind]
+        wide = min(wide, max(stretch.length / 2 - 6.0, 5.0))
+        inside = 1.0 - np.abs(along + 14.0 * wave * smooth(places.away, 20.0, 80.0)) / wide
+        if land.kind != "river":
+            inside = np.where(places.away < 200.0, inside, -1.0)
+        near = way.points[np.abs(stations - stretch.middle) <= 2 * wide, 2]
+        level = np.full(heights.shape, float(near.min(initial=way.points[:, 2].max())) - 6.0)
+        reach = 14.0
     else:
         first, wide = {"river": (26.0, 9.0), "lake": (30.0, 80.0), "coast": (32.0, 1e5)}[land.kind]
-        centre = first + wide
-        inside = 1.0 - np.abs(places.free - centre + 8.0 * wave) / wide
-        inside = np.where(beside & (places.free > first - 14.0), inside, -1.0)
+        inside = 1.0 - np.abs(places.free - first - wide + 8.0 * wave) / wide
+        inside = np.where((places.side == side) & (places.free > first - 14.0), inside, -1.0)
         if land.kind == "lake":
-            inside = np.minimum(inside, 1.0 - np.abs(along) / max(60.0, 0.38 * length))
+            inside = np.minimum(inside, 1.0 - np.abs(along) / max(60.0, 0.38 * stretch.of))
         if land.kind == "river":
             level = base - SHORE - 2.5
+        elif land.kind == "coast":
+            level = np.full(heights.shape, float(way.others[:, 2].min()) - SHORE - 0.8)
         else:
-            part = np.abs(np.linspace(0, 1, len(way.points)) - middle) * length <= max(60.0, 0.4 * length)
-            level = np.full(heights.shape, float(way.points[part, 2].min()) - SHORE - 0.8)
-            if land.kind == "coast":
-                level[:] = float(way.others[:, 2].min()) - SHORE - 0.8
+            near = way.points[np.abs(stations - stretch.middle) <= max(60.0, 0.4 * stretch.of), 2]
+            level = np.full(heights.shape, float(near.min()) - SHORE - 0.8)
+        reach = 40.0
     out = -inside * min(wide, 80.0)  # m from the edge of the water; negative in it
     shore = level + np.where(out < 0.0, np.maximum(BANK * out, -DEEP), BEACH * out)
-    inland = smooth(out, 6.0, 40.0)
-    drawn = np.where(out < 40.0, shore + (heights - shore) * inland, heights)
+    inland = smooth(out, 6.0, reach)
+    drawn = np.where(out < reach, shore + (heights - shore) * inland, heights)
     lowered = np.where((out > 8.0) & (out < 60.0), np.maximum(drawn, level + 0.5), drawn)
     return lowered, np.where(out < 3.0 * CELL, level, water)
 

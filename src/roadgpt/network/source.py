@@ -82,8 +82,9 @@ def read_sources(path: str | Path, wanted: str | None = None) -> list[RoadSource
             text = "[" + ",\n".join(line for line in text.splitlines() if line.strip()) + "]"
         data = text if ending in SUFFIXES else json_of(text)
         if path.name in OF_RUN and card.is_file():
-            of_run = World.model_validate(read_json(card, LARGEST)["request"]["world"]).values()
-            world = {name: of_run[name] for name in (*OF_FILE, "scene") if of_run[name] != ""}
+            said = World.model_validate(read_json(card, LARGEST)["request"]["world"])
+            of_run = said.with_heights_in(path.parent, path.parent.parent.parent).values()
+            world = {name: of_run[name] for name in (*OF_FILE, "scene", "ground") if of_run[name] != ""}
     except OSError as error:
         raise UsageError(f"cannot read {path}: {error.strerror}; give the path of a road file") from error
     except (ValueError, LookupError, TypeError) as error:

@@ -5,6 +5,7 @@ paved area of the network. Pictures, pages and exported meshes are made from the
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 
 from roadgpt.brief.junctions import RAMPS
 from roadgpt.geometry.curve import Array
-from roadgpt.ground.ground import Pavement
+from roadgpt.ground.ground import Pavement, Portal, Span
 from roadgpt.network.network import Junction, Kind, Network, NetworkRoad, RoadEnd
 from roadgpt.network.paved import GRID, NEAR, Area, paved_by, polygons_in
 from roadgpt.road import Road
@@ -21,6 +22,7 @@ from roadgpt.road.edges import line, stations
 if TYPE_CHECKING:
     from shapely import Polygon
 
+COVER = 7.0  # m from the road in a tunnel to the least land above it
 LONGEST = 4.0  # m between the points of a road's rim
 ROUND = 8  # segments in a quarter of a circle, where a shoulder rounds a corner
 GREEN = 0.1  # least share of a hole in the paved area that shoulders leave free, so that grass grows there
@@ -84,21 +86,29 @@ def stations_of(member: NetworkRoad) -> Array:
     return np.interp(np.arange(place[-1] + 1), place, s)
 
 
-def pavement_of(network: Network) -> Pavement:
+def pavement_of(network: Network, spans: Sequence[Span] = ()) -> Pavement:
     """Returns the surface of all roads and junctions of a network with their shoulders, which the ground
-    meets."""
+    meets: not on bridges and in tunnels, the ``spans``."""
     import shapely
     from shapely.geometry.polygon import orient
 
     parts = NetworkSurface.of(network)
-    inner, outer, shapes = [], [], []
+    inner, outer, shapes, covers, portals = [], [], [], [], list[Portal]()
     for member in parts.roads:
-        s, profile = stations_of(member), member.profile
-        lines = [line(member.road, s, t) for t in (*profile.edges(s), *profile.rims(s))]
-        left, right, left_rim, right_rim = lines
-        inner.append(_quads(right, left))
-        outer += [_quads(left, left_rim), _quads(right_rim, right)]
-        shapes.append(shapely.Polygon(np.concatenate([right_rim, left_rim[::-1]])[:, :2]))
+        own = sorted((each for each in spans if each.road == member.id), key=lambda each: each.start)
+        stops = [0.0, *(at for each in own for at in (each.start, each.end)), member.road.length]
+        for number, (start, end) in enumerate(pairwise(stops)):
+            left, right, left_rim, right_rim = _lines_of(member, start, end)
+            if number % 2 == 0:
+                inner.append(_quads(right, left))
+                outer += [_quads(left, left_rim), _quads(right_rim, right)]
+                shapes.append(shapely.Polygon(np.concatenate([right_rim, left_rim[::-1]])[:, :2]))
+            elif own[number // 2].kind == "tunnel":
+                covers.append(_quads(right_rim, left_rim) + [0.0, 0.0, COVER])
+                for at, way in ((0, 1), (-1, -1)):
+                    ahead = way * _unit(left_rim[at] - right_rim[at])[::-1] * [1.0, -1.0]
+                    one, other = (left_rim[at], right_rim[at])[::way]
+                    portals.append(Portal(one, other, ahead, COVER))
     for area in parts.areas:
         for part in (area.paved, *area.kerbed, *area.green, area.shoulder):
             flat, corners = triangulated(part)
@@ -108,13 +118,28 @@ def pavement_of(network: Network) -> Pavement:
     if len(shapes) == 1 and shapes[0].is_valid:
         whole = shapes[0]
     else:
-        whole = shapely.set_precision(shapely.union_all(shapely.make_valid(np.array(shapes, object))), GRID)
+        united = shapely.union_all(shapely.make_valid(np.array(shapes, object)))
+        whole = shapely.set_precision(united, GRID)
     rings = [
         np.asarray(ring.coords, float)[:-1, :2]
         for part in polygons_in(whole)
         for ring in (orient(part).exterior, *orient(part).interiors)
     ]
-    return Pavement.of(np.concatenate([*inner, *outer]), rings)
+    cover = np.concatenate(covers) if covers else np.empty((0, 3, 3))
+    more = {"portals": tuple(portals), "covers": cover, "spans": tuple(spans)}
+    return Pavement.of(np.concatenate([*inner, *outer]), rings, **more)
+
+
+def _lines_of(member: NetworkRoad, start: float, end: float) -> list[Array]:
+    """Returns the left and right edge and the left and right rim between two stations, ``(n, 3)`` each."""
+    s, profile = stations_of(member), member.profile
+    s = np.r_[start, s[(s > start) & (s < end)], end]
+    return [line(member.road, s, t) for t in (*profile.edges(s), *profile.rims(s))]
+
+
+def _unit(vector: Array) -> Array:
+    flat = vector[:2]
+    return np.asarray(flat / np.hypot(*flat))
 
 
 def _quads(right: Array, left: Array) -> Array:

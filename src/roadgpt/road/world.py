@@ -8,8 +8,9 @@ when it is needed."""
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from pathlib import Path
 from statistics import mean
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -19,6 +20,7 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
+    WrapValidator,
     model_serializer,
     model_validator,
 )
@@ -31,6 +33,7 @@ from roadgpt.brief.scene import Scene
 from roadgpt.brief.visibility import weather_drawn
 from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, USUAL_MAP
 from roadgpt.errors import BriefError, UsageError
+from roadgpt.ground.given import BESIDE, NAME, GivenGround
 
 if TYPE_CHECKING:
     from roadgpt.brief.model import Brief
@@ -135,10 +138,12 @@ def bank_in(value: str | float, most: float = STEEPEST, unit: str = "a ratio") -
     raise ValueError(f"give 'none', 'auto' or {unit} from 0 to {most:g}")
 
 
-def ground_in(text: str) -> str:
-    """Returns a kind of land such as "hilly", or "hilly:3" with a seed; raises ValueError if there is no such
-    kind."""
-    kind, colon, seed = text.partition(":")
+def ground_in(given: Any, check: Callable[[Any], str]) -> str:
+    """Returns given land as it is; or a kind of land such as "hilly", or "hilly:3" with a seed. Raises
+    ValueError if there is no such kind."""
+    if isinstance(given, GivenGround) or (isinstance(given, str) and NAME.fullmatch(given)):
+        return given
+    kind, colon, seed = (text := check(given)).partition(":")
     if text and (kind not in LAND_KINDS or (colon and not re.fullmatch(r"\d{1,9}", seed))):
         raise ValueError(f"give {', '.join(LAND_KINDS)}, with a seed as in hilly:3")
     return text
@@ -206,16 +211,16 @@ class Site(BaseModel):
     ``World.on_surface_of``."""
     z_floor: float = -28.0
     """Height in metres of the flat ground of the simulator's map."""
-    ground: Annotated[str, AfterValidator(ground_in)] = Field(
-        "", description="The land that the road lies in: flat, rolling, hilly or mountain, with a seed as in "
-        "hilly:3. [default: none to drive on]",
+    ground: Annotated[str, WrapValidator(ground_in)] = Field(
+        "", description="The land: flat, rolling, hilly or mountain, with a seed as in hilly:3; or a file of "
+        "heights. [default: as described]",
     )  # fmt: skip
 
     @property
     def made_ground(self) -> tuple[Any, int] | None:
-        """The kind and the seed of the land; None if none is asked for."""
+        """The kind and the seed of the land; None if none is asked for, or it is given."""
         kind, _, seed = self.ground.partition(":")
-        return (kind, int(seed or 0)) if kind else None
+        return (kind, int(seed or 0)) if kind in LAND_KINDS else None
 
 
 class CrossSection(BaseModel):
@@ -430,6 +435,16 @@ class World(BaseModel):
     def given_map(self) -> float | None:
         """The side of the map in metres, if one was given; None if it is the usual one."""
         return self.site.map_size if "map_size" in self.site.model_fields_set else None
+
+    def with_heights_in(self, *folders: Path) -> "World":
+        """Returns the World with the heights of its given land, if one of the folders holds them."""
+        name = self.site.ground
+        if isinstance(name, GivenGround) or not NAME.fullmatch(name):
+            return self
+        from roadgpt.ground.files import attached
+
+        found = next((folder for folder in folders if (folder / BESIDE).is_file()), None)
+        return self if found is None else self.changed(ground=attached(name, found))
 
     @property
     def has_ground(self) -> bool:

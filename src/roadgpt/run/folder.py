@@ -32,9 +32,10 @@ from roadgpt.check import Finding
 from roadgpt.design import DesignReport
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError, explained
+from roadgpt.ground.given import BESIDE, GivenGround
 from roadgpt.network import road_from_json
 from roadgpt.reading import LARGEST, json_of, read_json, read_model, read_text, strictly
-from roadgpt.road import read_design
+from roadgpt.road import World, read_design
 from roadgpt.run import store
 from roadgpt.run.atomic import json_text, refuse_links, to_bytes, whole_folder, write_whole
 from roadgpt.run.execution import test_name, test_text
@@ -118,6 +119,7 @@ def run_folder(campaign: Path, index: int) -> Path:
 def write_run(run: Run, campaign: Path, draw: Draw | None = None) -> Path:
     """Writes a Run into a campaign's folder, its test file last; returns the Run's own folder."""
     folder = write_run_folder(run, campaign, draw)
+    keep_ground(run.world, campaign)
     write_whole(campaign / test_name(run.index), test_text(run))
     return folder
 
@@ -133,6 +135,15 @@ def write_run_folder(run: Run, campaign: Path, draw: Draw | None = None) -> Path
         if draw is not None:
             draw.of_run(run, draft)
     return folder
+
+
+def keep_ground(world: World, folder: Path) -> None:
+    """Writes the heights of given land into a folder of runs, if they are not there."""
+    given = world.site.ground
+    if isinstance(given, GivenGround) and not (folder / BESIDE).is_file():
+        from roadgpt.ground.files import save_ground
+
+        write_whole(folder / BESIDE, save_ground(given))
 
 
 def remove_run(index: int, campaign: Path) -> None:

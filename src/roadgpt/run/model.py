@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
@@ -90,7 +91,9 @@ class Request(Frozen):
         given = self.setup.model_fields_set | self.world.limits.model_fields_set
         if not given >= {"driver", "oob_tolerance"}:
             raise UsageError(f"{file} lacks driver or oob_tolerance, whose defaults have changed; add them")
-        return self.model_copy(update={"setup": self.setup.came_with(file)})
+        beside = Path(str(file)).parent
+        world = self.world.with_heights_in(beside, beside.parent.parent)  # of one run, or of all in a folder
+        return self.model_copy(update={"setup": self.setup.came_with(file), "world": world})
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,7 @@ from roadgpt.ground.relief import smooth
 from roadgpt.network import Network, NetworkRoad, RoadEnd, network_of, only_road
 from roadgpt.network.markings import JunctionSign, arrows, between_crosswalks, signs, strokes
 from roadgpt.network.paved import Area
+from roadgpt.network.structures import solids
 from roadgpt.network.surface import (
     ROUND,
     JunctionSurface,
@@ -85,6 +86,16 @@ def land_patches(ground: Ground) -> list[Patch]:
     if len(water.triangles):
         out += _tiles(water, attributes(0.0, 0.0, np.full(len(water.points), level_light())), WATER)
     return out
+
+
+def _concrete(triangles: Array) -> Patch:
+    """Returns triangles ``(m, 3, 3)`` as a patch, each with its own corners."""
+    facing = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    facing /= np.maximum(np.linalg.norm(facing, axis=1, keepdims=True), 1e-9)
+    light = np.repeat(daylight(facing), 3)
+    corners = np.arange(3 * len(triangles)).reshape(-1, 3)
+    kinds = np.full(len(triangles), CONCRETE, np.int64)
+    return Patch(triangles.reshape(-1, 3), attributes(0.0, 0.0, light), corners, kinds)
 
 
 def _tiles(mesh: GroundMesh, values: Array, kind: int) -> list[Patch]:
@@ -249,6 +260,7 @@ def patches_of(road: Road, world: World, ground: Ground) -> tuple[list[Patch], L
     """Returns the patches of roads, junctions, lines, arrows and signs, of the route's start and goal, and of
     the land; and the boundaries of lanes along the axis of stations."""
     network, land = network_of(road, world), land_patches(ground)
+    land += [_concrete(each) for each in solids(network, ground)]
     is_laid = bool(ground.pavement.rims)  # and does not float
     if (only := only_road(road, world)) is not None:  # whose boundaries show its lines, start and goal
         patches = _road(network, only, 0.0, is_laid, has_others=False)

@@ -9,7 +9,7 @@ without a seam, and are the same for every road. Source: Khronos Group, glTF 2.0
 import io
 import json
 import struct
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -21,11 +21,13 @@ from PIL import Image
 
 from roadgpt.export.ego import Poses, goal_of, on_the_ground, start_of
 from roadgpt.geometry.curve import Array
+from roadgpt.ground.ground import Ground, Span
 from roadgpt.ground.mesh import GroundMesh, mesh_of, water_of
 from roadgpt.network import Network, NetworkRoad, network_of, only_road
 from roadgpt.network.landscape import ground_around
 from roadgpt.network.markings import arrows, strokes
 from roadgpt.network.paved import Area, polygons_in
+from roadgpt.network.structures import solids
 from roadgpt.network.surface import JunctionSurface, NetworkSurface, stations_of, triangulated
 from roadgpt.road import Profile, Road, World
 from roadgpt.road.edges import line, named_lines, normals
@@ -131,6 +133,7 @@ def meshes(road: Road, world: World, poses: Poses | None = None) -> list[Triangl
     ground = ground_around(road, world)
     if ground.pavement.rims:  # without shoulders, the road floats
         out.append(_land("ground", "grass", mesh_of(ground, to_horizon=False)))
+        out += [_solid(f"{span.kind} {n}", each) for n, (span, each) in _structures(network, ground)]
         if len((water := water_of(ground)).triangles):
             out.append(_land("water", "water", water))
     return out
@@ -206,6 +209,19 @@ def _painted(network: Network) -> list[TriangleMesh]:
         points = arrow.points + PAINT * UP
         bands.append((points, np.tile(UP, (len(points), 1)), points[:, :2], arrow.corners))
     return [_joined("lines", "paint", bands)] if bands else []
+
+
+def _structures(network: Network, ground: Ground) -> Iterator[tuple[int, tuple[Span, Array]]]:
+    return enumerate(zip(ground.pavement.spans, solids(network, ground), strict=True))
+
+
+def _solid(name: str, triangles: Array) -> TriangleMesh:
+    points = triangles.reshape(-1, 3)
+    facing = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    facing = np.repeat(facing / np.maximum(np.linalg.norm(facing, axis=1, keepdims=True), 1e-9), 3, axis=0)
+    return TriangleMesh(
+        name, "concrete", points, facing, points[:, :2], np.arange(len(points)).reshape(-1, 3)
+    )
 
 
 def _land(name: str, material: str, mesh: GroundMesh) -> TriangleMesh:

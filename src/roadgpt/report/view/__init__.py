@@ -25,12 +25,12 @@ from roadgpt.check.describing import describe
 from roadgpt.errors import ExportError, RoadGPTError, UsageError, explained
 from roadgpt.export.ego import CAR
 from roadgpt.geometry.curve import Array
-from roadgpt.ground.ground import Ground
 from roadgpt.ground.mesh import GroundMesh, mesh_of, water_of
 from roadgpt.network import network_of, only_road
 from roadgpt.network.markings import PaintedStroke, arrows, between_crosswalks, signs, strokes
 from roadgpt.network.paved import Area
 from roadgpt.network.route import area_with_verges
+from roadgpt.network.structures import solids
 from roadgpt.network.surface import JunctionSurface, NetworkSurface, free_ends, triangulated
 from roadgpt.report.birds_eye import minor_places_of, places_of
 from roadgpt.report.canvas import INK, LETTERS, OUTCOMES, SEVERE, VERMILLION, origin, outcome_of
@@ -60,7 +60,7 @@ from roadgpt.scene.network_mesh import COLOURS, ROCK, faces_of, near_and_far
 from roadgpt.scene.patterns import noise
 from roadgpt.scene.scene import landscape
 from roadgpt.scene.shade import AIR, ASPHALT, DRIER, LUSH, PAINTED, ROCKS, STONES, panorama, to_screen
-from roadgpt.scene.trees import SIDE, Trees, pictures
+from roadgpt.scene.trees import SIDE, pictures
 from roadgpt.scene.weather import Weather
 from roadgpt.traffic.actor import STEP
 from roadgpt.verdict.measures import measure
@@ -192,7 +192,7 @@ def scene(run: Run) -> dict[str, Any]:
         + ("" if run.road.has_way else OF_FIRST_ROAD),
         "words": _words(run.road),
         "road": _road(run.road, run.world, is_only),
-        "land": _land(*landscape(run.world.lay(run.road), run.world)),
+        "land": _land(run.world.lay(run.road), run.world),
         "world": {name: run.world.values()[name] for name in WORLD},
         "marking": {"width": LINE, "dash": DASH, "gap": GAP},
         "severe": SCALE,
@@ -223,14 +223,18 @@ def _road(road: Road, world: World, is_only: bool) -> dict[str, Any]:
     return made
 
 
-def _land(ground: Ground, trees: Trees) -> dict[str, Any]:
-    """Returns the ground and its water as points and corners of triangles; and of each tree x, y, z, height
-    and width in decimetres, the number of its picture, and its brightness in percent."""
+def _land(road: Road, world: World) -> dict[str, Any]:
+    """Returns the ground, its water, and bridges and tunnels as points and corners of triangles; and of each
+    tree x, y, z, height and width in decimetres, the number of its picture, and its brightness in percent."""
+    ground, trees = landscape(road, world)
+    built = [*solids(network_of(road, world), ground), np.empty((0, 3, 3))]
+    corners = np.concatenate(built).reshape(-1, 3)
     of_trees = [10 * trees.places, 10 * trees.sizes, trees.looks[:, None], 100 * trees.tints[:, None]]
     (x0, x1), (y0, y1) = ground.x[[0, -1]], ground.y[[0, -1]]
     return {
         "ground": _mesh(mesh_of(ground)),
         "water": _mesh(water_of(ground)),
+        "solids": _mesh(GroundMesh(corners, np.arange(len(corners)).reshape(-1, 3))),
         "isLaid": bool(ground.pavement.rims),
         "middle": rounded(np.array([x0 + x1, y0 + y1]) / 2, 1),
         "wide": round(max(x1 - x0, y1 - y0) / 2 + 1.0, 1),

@@ -53,6 +53,7 @@ function landMesh({ land }, origin, grain) {
   const group = new THREE.Group();
   group.add(landShape(land.ground, origin, look, LOWER).mesh(THREE.MeshLambertMaterial, grain));
   if (land.water.corners) group.add(landShape(land.water, origin, () => COLOURS.water, 0).mesh());
+  if (land.solids.corners) group.add(landShape(land.solids, origin, () => COLOURS.concrete, LOWER).mesh());
   return group;
 }
 

@@ -1,0 +1,186 @@
+"""Reads and writes heights of land: 16-bit PNG with its world file, ESRI ASCII grids (.asc), NumPy arrays
+(.npy) and, with rasterio, GeoTIFF. The south-west corner of a file is the point (0, 0) of the map.
+
+A PNG has no unit, and a NumPy array no size of its cells: a file of the same name with the ending .json says
+them, as in {"cell": 1.0, "lowest": 312.4, "step": 0.01}, in metres."""
+
+import hashlib
+import io
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from roadgpt.errors import UsageError
+from roadgpt.geometry.curve import Array
+from roadgpt.ground.given import BESIDE, GivenGround
+from roadgpt.ground.relief import Relief
+
+MOST = 16_000_000  # heights in a file
+LARGEST_CELL, HIGHEST = 1000.0, 20_000.0  # m
+SUFFIXES = (".png", ".asc", ".npy", ".tif", ".tiff")
+DEGREE = 111_320.0  # m of a degree of latitude, and of longitude at the equator
+LEVELS = 65_535  # of 16 bits
+NO_DATA = -32_768.0  # the height of voids in files of SRTM
+
+
+def named(path: str, relief: Relief) -> GivenGround:
+    """Returns the name of land with these heights, which it carries."""
+    data = np.ascontiguousarray(relief.heights).tobytes() + repr(relief.cell).encode()
+    return GivenGround.named(f"{path}@{hashlib.sha256(data).hexdigest()[:12]}", relief)
+
+
+def save_ground(ground: GivenGround) -> bytes:
+    """Returns the heights of given land as the content of a file ``BESIDE``."""
+    data = io.BytesIO()
+    np.savez_compressed(data, heights=ground.relief.heights, cell=ground.relief.cell)
+    return data.getvalue()
+
+
+def attached(name: str, folder: Path) -> GivenGround:
+    """Returns the given land of this name with the heights that a folder holds; raises UsageError if they are
+    not there, or not those."""
+    path = folder / BESIDE
+    try:
+        with np.load(path, allow_pickle=False) as data:
+            made = named(name.rpartition("@")[0], _relief(data["heights"], float(data["cell"]), path))
+    except (OSError, ValueError, KeyError) as error:
+        raise UsageError(f"the land '{name}' is missing: {path} cannot be read; copy it there") from error
+    if made != name:
+        raise UsageError(f"{path} holds other land than '{name}'; copy the right one there")
+    return made
+
+
+def read_ground(path: Path) -> GivenGround:
+    """Returns the land in a file; raises UsageError if it cannot be read."""
+    readers = {".png": _png, ".asc": _asc, ".npy": _npy, ".tif": _tiff, ".tiff": _tiff}
+    if (reader := readers.get(path.suffix.lower())) is None:
+        raise UsageError(f"{path} is no land that can be read; give one of {', '.join(SUFFIXES)}")
+    try:
+        return named(str(path), reader(path))
+    except (OSError, ValueError, KeyError, MemoryError, Image.DecompressionBombError) as error:
+        why = str(error).splitlines()[0][:160] if str(error) else type(error).__name__
+        raise UsageError(f"the land in {path} cannot be read: {why}") from error
+
+
+def _relief(heights: NDArray[Any], cell: float, path: Path) -> Relief:
+    """Returns land with its first row in the south."""
+    table = np.array(heights, np.float64)
+    if table.ndim != 2 or min(table.shape) < 2 or table.size > MOST:
+        raise UsageError(f"{path} has no table of 2 x 2 to {MOST:,} heights")
+    if not 0 < cell <= LARGEST_CELL:
+        raise UsageError(f"{path} has cells of {cell:g} m; give land with cells up to {LARGEST_CELL:g} m")
+    lost = ~(np.abs(table) <= HIGHEST) | (table == NO_DATA)
+    if lost.any():
+        raise UsageError(
+            f"{path} has {lost.sum():,} points without a height, voids or beyond {HIGHEST:,.0f} m; fill them"
+        )
+    return Relief(0.0, 0.0, cell, table, np.full(table.shape, np.nan), np.empty((0, 3)))
+
+
+def _said_beside(path: Path, *names: str) -> list[float]:
+    beside = path.with_suffix(".json")
+    if not beside.is_file():
+        example = json.dumps({name: {"cell": 1.0, "lowest": 312.4, "step": 0.01}[name] for name in names})
+        raise UsageError(f"{path} does not say its metres; write into {beside.name} beside it: {example}")
+    said = json.loads(beside.read_text(encoding="utf-8"))
+    return [float(said[name]) for name in names]
+
+
+def _png(path: Path) -> Relief:
+    with Image.open(path) as image:
+        if image.mode not in ("I;16", "I;16B", "I", "L"):
+            raise UsageError(f"{path} is a picture in colours; give a grey one with 16 bits")
+        levels = np.asarray(image, np.float64)[::-1]
+    cell, lowest, step = _said_beside(path, "cell", "lowest", "step")
+    return _relief(lowest + step * levels, cell, path)
+
+
+def _npy(path: Path) -> Relief:
+    table = np.load(path, allow_pickle=False)
+    (cell,) = _said_beside(path, "cell")
+    return _relief(table, cell, path)
+
+
+def _asc(path: Path) -> Relief:
+    with path.open(encoding="ascii", errors="strict") as lines:
+        header: dict[str, float] = {}
+        while len(header) < 6:
+            place = lines.tell()
+            words = lines.readline().split()
+            if len(words) != 2 or not words[0][0].isalpha():
+                lines.seek(place)
+                break
+            header[words[0].lower()] = float(words[1])
+        rows, columns = int(header["nrows"]), int(header["ncols"])
+        if not 4 <= rows * columns <= MOST:
+            raise UsageError(f"{path} has no table of 2 x 2 to {MOST:,} heights")
+        table = np.loadtxt(lines, ndmin=1).reshape(rows, columns)[::-1]
+    table = np.where(table == header.get("nodata_value", math.nan), math.nan, table)
+    return _relief(table, header["cellsize"], path)
+
+
+def _tiff(path: Path) -> Relief:
+    try:
+        import rasterio
+    except ImportError as error:
+        raise UsageError('GeoTIFF needs rasterio: pip install "roadgpt[ground]"') from error
+    try:
+        with rasterio.open(path) as data:
+            if data.width * data.height > MOST:
+                raise UsageError(f"{path} has no table of 2 x 2 to {MOST:,} heights")
+            table = data.read(1, masked=True).filled(math.nan).astype(np.float64)[::-1]
+            wide, high = abs(data.transform.a), abs(data.transform.e)
+            is_geographic = bool(data.crs and data.crs.is_geographic)
+            middle = (data.bounds.bottom + data.bounds.top) / 2
+    except rasterio.errors.RasterioError as error:
+        raise ValueError(str(error)) from error
+    if is_geographic:
+        wide, high = wide * DEGREE * math.cos(math.radians(middle)), high * DEGREE
+    return _square(table, wide, high, path)
+
+
+def _square(table: Array, wide: float, high: float, path: Path) -> Relief:
+    """Returns land with square cells, the smaller of both sides."""
+    if math.isclose(wide, high, rel_tol=1e-6):
+        return _relief(table, wide, path)
+    cell, (rows, columns) = min(wide, high), table.shape
+    x = np.arange(0.0, (columns - 1) * wide + 1e-9, cell) / wide
+    y = np.arange(0.0, (rows - 1) * high + 1e-9, cell) / high
+    i, j = np.minimum(x.astype(int), columns - 2), np.minimum(y.astype(int), rows - 2)
+    u, v = x - i, (y - j)[:, None]
+    across = table[:, i] * (1 - u) + table[:, i + 1] * u
+    return _relief(across[j] * (1 - v) + across[j + 1] * v, cell, path)
+
+
+def write_ground(heights: Array, cell: float, path: Path) -> None:
+    """Writes heights ``(rows, columns)``, the first row in the south, as the ending of the file asks: .png
+    with its world file and .json, .asc, or .npy with its .json. Raises UsageError for other endings."""
+    lowest = float(heights.min())
+    if path.suffix == ".png":
+        step = max(float(np.ptp(heights)) / LEVELS, 0.001)
+        levels = np.rint((heights[::-1] - lowest) / step).astype(np.uint16)
+        Image.fromarray(levels).save(path)
+        north = (len(heights) - 1) * cell
+        lines = (f"{value!r}\n" for value in (cell, 0.0, 0.0, -cell, 0.0, north))
+        path.with_suffix(".pgw").write_text("".join(lines), encoding="ascii")
+        _say(path, cell=cell, lowest=lowest, step=step)
+    elif path.suffix == ".asc":
+        rows, columns = heights.shape
+        head = f"ncols {columns}\nnrows {rows}\nxllcenter 0\nyllcenter 0\ncellsize {cell!r}\n"
+        body = io.StringIO()
+        np.savetxt(body, heights[::-1], fmt="%.3f")
+        path.write_text(head + body.getvalue(), encoding="ascii")
+    elif path.suffix == ".npy":
+        np.save(path, heights.astype(np.float32))
+        _say(path, cell=cell)
+    else:
+        raise UsageError(f"land is not written as '{path.suffix}'; give a .png, .asc or .npy")
+
+
+def _say(path: Path, **said: float) -> None:
+    path.with_suffix(".json").write_text(json.dumps(said) + "\n", encoding="utf-8")

@@ -1,0 +1,102 @@
+"""Builds the solid parts of bridges and tunnels: parapets, decks and piers; walls, ceilings and portals.
+
+The road's own surface is not among them. The clearance of tunnels is that of the German RABT: 4.5 m, and room
+for lamps; other dimensions are usual ones."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from roadgpt.geometry.curve import Array
+from roadgpt.ground.ground import Ground, Span
+from roadgpt.network.network import Network, NetworkRoad
+from roadgpt.network.surface import COVER, stations_of
+from roadgpt.road.edges import line
+
+PARAPET, THICK = 1.0, 0.25  # m, height and thickness
+DEEP = (0.9, 1 / 22)  # m, least depth of a deck; depth as a share of the distance between piers
+PIER, PIERS = (1.4, 0.55), 28.0  # m along and share of the road's width across; m between piers
+FOOTING = 1.0  # m by which piers reach into the ground
+CLEAR = 5.0  # m from the road to the ceiling of a tunnel
+FACE = (3.0, 1.0)  # m of a portal's wall beside the road, and above the land there
+
+
+def solids(network: Network, ground: Ground) -> Iterator[Array]:
+    """Yields the triangles ``(m, 3, 3)`` in metres of each bridge and each tunnel, seen from the side from
+    which their corners turn counter-clockwise."""
+    for span in ground.pavement.spans:
+        member = network.road(span.road)
+        yield np.concatenate([*(_bridge if span.kind == "bridge" else _tunnel)(member, span, ground)])
+
+
+def _rims(member: NetworkRoad, span: Span) -> tuple[Array, Array]:
+    s = stations_of(member)
+    s = np.r_[span.start, s[(s > span.start) & (s < span.end)], span.end]
+    left, right = (line(member.road, s, t) for t in member.profile.rims(s))
+    return left, right
+
+
+def _up(points: Array, height: float) -> Array:
+    return points + [0.0, 0.0, height]
+
+
+def _sheet(one: Array, other: Array) -> Array:
+    """Returns the surface between two lines ``(n, 3)``, seen from where ``other`` is left of ``one``."""
+    a, b, c, d = one[:-1], one[1:], other[1:], other[:-1]
+    return np.stack([a, b, c, a, c, d], axis=1).reshape(-1, 3, 3)
+
+
+def _quad(a: Array, b: Array, c: Array, d: Array) -> Array:
+    return np.array([[a, b, c], [a, c, d]])
+
+
+def _bridge(member: NetworkRoad, span: Span, ground: Ground) -> Iterator[Array]:
+    left, right = _rims(member, span)
+    across = left - right
+    unit = across / np.linalg.norm(across, axis=1, keepdims=True)
+    length = span.end - span.start
+    count = max(0, round(length / PIERS) - 1)
+    depth = max(DEEP[0], DEEP[1] * length / (count + 1))
+    low_left, low_right = _up(left, -depth), _up(right, -depth)
+    yield from (_sheet(left, low_left), _sheet(low_right, right), _sheet(low_left, low_right))
+    for rim, way in ((left, -1.0), (right, 1.0)):
+        inner = rim + way * THICK * unit
+        outside, inside = (rim, inner) if way < 0 else (inner, rim)  # left and right edge of the wall
+        yield _sheet(_up(inside, PARAPET), _up(outside, PARAPET))
+        yield _sheet(outside, _up(outside, PARAPET))[:, ::-1]
+        yield _sheet(inside, _up(inside, PARAPET))
+        for at, end in ((0, 1), (-1, -1)):
+            corners = inside[at], outside[at], _up(outside[at], PARAPET), _up(inside[at], PARAPET)
+            yield _quad(*corners[::-end])
+    middle, half = (left + right) / 2, np.linalg.norm(across, axis=1) / 2 * PIER[1]
+    for n in range(1, count + 1):
+        k = round(n * (len(left) - 1) / (count + 1))
+        foot = float(ground.height(*middle[k, :2, None])[0]) - FOOTING
+        top = middle[k, 2] - depth
+        if top - foot < 2 * FOOTING:
+            continue
+        ahead = np.array([unit[k, 1], -unit[k, 0], 0.0]) * PIER[0] / 2
+        side = unit[k] * half[k]
+        ring = [middle[k] + a * ahead + b * side for a, b in ((1, -1), (1, 1), (-1, 1), (-1, -1), (1, -1))]
+        flat = np.array(ring) * [1.0, 1.0, 0.0]
+        yield _sheet(flat + [0.0, 0.0, foot], flat + [0.0, 0.0, top])
+
+
+def _tunnel(member: NetworkRoad, span: Span, ground: Ground) -> Iterator[Array]:
+    left, right = _rims(member, span)
+    high_left, high_right = _up(left, CLEAR), _up(right, CLEAR)
+    yield from (_sheet(left, high_left), _sheet(high_right, right), _sheet(high_left, high_right))
+    for at, way in ((0, 1.0), (-1, -1.0)):
+        a, b = (right[at], left[at]) if way > 0 else (left[at], right[at])  # right and left of who drives in
+        out = (b - a) / np.linalg.norm(b - a)
+        beside = [a - FACE[0] * out, b + FACE[0] * out]
+        land = ground.height(*np.array([a, *beside, b])[:, :2].T)
+        top = max(COVER, float(land.max()) - min(a[2], b[2])) + FACE[1]
+        base = [_up(each, -FACE[1]) for each in beside]
+        crown = [np.array([*each[:2], min(a[2], b[2]) + top]) for each in beside]
+        roof = [_up(a, CLEAR), _up(b, CLEAR)]
+        feet = [_up(a, -FACE[1]), _up(b, -FACE[1])]
+        over = [np.array([*each[:2], crown[0][2]]) for each in (a, b)]
+        yield _quad(base[0], feet[0], over[0], crown[0])
+        yield _quad(feet[1], base[1], crown[1], over[1])
+        yield _quad(roof[0], roof[1], over[1], over[0])
