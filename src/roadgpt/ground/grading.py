@@ -40,12 +40,16 @@ class Layers(NamedTuple):
     relief_x: float
     relief_y: float
     relief_cell: float
-    segments: Array  # x, y, z of both ends of each segment of a rim, (n, 6)
+    segments: Array
+    """x, y, z of both ends of each segment of a rim, (n, 6), and then of the edges of covers, from which land
+    is filled but not cut."""
+    rims: int  # how many segments are those of rims
     triangles: Array  # x, y, z of the corners of the surface of the roads, (m, 9)
     starts: Integers  # of each bucket, in ``members``: one more than there are buckets
     members: Integers  # triangles
     slope: float
     covers: Array  # x, y, z of the corners of what land covers tunnels, (k, 9)
+    lintels: Array  # x, y, z of both ends of the least height of land above each mouth of a tunnel, (k, 6)
 
 
 @inlined
@@ -228,6 +232,8 @@ def land_at(of: Layers, x: float, y: float) -> float:
     for k in range(len(of.covers)):
         roof = _height_on(of.covers[k], x, y)
         if not math.isnan(roof):
+            for n in range(len(of.lintels)):
+                found = min(found, _cone(of.lintels, n, x, y, of.slope, 1.0))
             return max(found, roof)
     i, j = math.floor((x - of.x) / of.cell), math.floor((y - of.y) / of.cell)
     if i < 0 or j < 0 or i >= columns - 1 or j >= rows - 1:
@@ -248,8 +254,8 @@ def _nearest_cone(of: Layers, number: int, x: float, y: float, sign: float) -> f
         return math.inf
     best = sign * _cone(of.segments, number, x, y, of.slope, sign)
     for step in (-1, 1):
-        at = number + step
-        while 0 <= at < len(of.segments):
+        at, last = number + step, of.rims if sign > 0.0 else len(of.segments)
+        while 0 <= at < last:
             height = sign * _cone(of.segments, at, x, y, of.slope, sign)
             if height >= best:
                 break

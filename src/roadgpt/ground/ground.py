@@ -81,7 +81,7 @@ class Pavement:
         starts, members = grading.buckets(plain, x, y, side, rows, columns)
         none, no = np.empty((rows, columns)), np.empty((0, 0), np.int32)
         layers = Layers(
-            x, y, side, none, no, no, none, 0.0, 0.0, 1.0, none, plain, starts, members, SLOPE, none
+            x, y, side, none, no, no, none, 0.0, 0.0, 1.0, none, 0, plain, starts, members, SLOPE, none, none
         )
         inwards = np.concatenate([_left_of(ring) for ring in outlines])
         heights = grading.roads_at(layers, *(flat + INSIDE * inwards).T)
@@ -104,6 +104,22 @@ class Pavement:
             at = np.hypot(*middle[:, :2].T) < np.hypot(*(portal.left - portal.right)[:2]) / 2 + SAME
             found = found[~(at & (np.abs(across) < 1e-2) & (np.abs(middle[:, :2] @ portal.ahead) < 0.05))]
         return found
+
+    @cached_property
+    def sides(self) -> Array:
+        """The outer edges of the covers, ``(n, 6)``: those that no two triangles share."""
+        corners = np.round(self.covers.reshape(-1, 3), 6)
+        points, at = np.unique(corners, axis=0, return_inverse=True)
+        triangles = at.reshape(-1, 3)
+        edges = np.concatenate([triangles[:, k] for k in ([0, 1], [1, 2], [2, 0])])
+        single, counts = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
+        return np.asarray(points[single[counts == 1]].reshape(-1, 6))
+
+    @cached_property
+    def lintels(self) -> Array:
+        """The lines ``(k, 6)`` above the mouths of tunnels from which the land rises."""
+        lines = [np.r_[each.left, each.right] + [0, 0, each.high] * 2 for each in self.portals]
+        return np.array(lines).reshape(-1, 6)
 
 
 class Earthworks(NamedTuple):
@@ -142,14 +158,18 @@ class Ground:
         starts, members = grading.buckets(triangles, *place, *shape)
         layers = Layers(
             *place, none, no, no, relief.heights, relief.x, relief.y, relief.cell,
-            pavement.segments, triangles, starts, members, slope,
-            np.ascontiguousarray(pavement.covers.reshape(-1, 9)),
+            np.concatenate([pavement.segments, pavement.sides]), len(pavement.segments), triangles, starts,
+            members, slope, np.ascontiguousarray(pavement.covers.reshape(-1, 9)), pavement.lintels,
         )  # fmt: skip
         roofs = grading.on_roads(layers.covers, *place, *shape)
-        land = np.fmax(grading.resampled(np.empty(shape), layers), roofs)
+        land = grading.resampled(np.empty(shape), layers)
+        if (at := np.argwhere(~np.isnan(roofs))).size:
+            x, y = np.asarray(layers.x + cell * at[:, 1]), np.asarray(layers.y + cell * at[:, 0])
+            land[tuple(at.T)] = grading.heights_at(layers, x, y, False)
         roads = grading.on_roads(triangles, *place, *shape)
-        cuts, top = grading.spread(pavement.segments, land, roads, *place, slope, 1.0)
-        fills, floor = grading.spread(pavement.segments, land, roads, *place, slope, -1.0)
+        fixed = np.where(np.isnan(roads), roofs, roads)
+        cuts, top = grading.spread(pavement.segments, land, fixed, *place, slope, 1.0)
+        fills, floor = grading.spread(layers.segments, land, fixed, *place, slope, -1.0)
         graded = np.where(np.isnan(roofs), np.minimum(np.maximum(land, floor), top), land)
         heights = np.where(np.isnan(roads), graded, roads)
         return cls(relief, pavement, layers._replace(heights=heights, cuts=cuts, fills=fills))

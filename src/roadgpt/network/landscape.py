@@ -4,6 +4,7 @@ bridges and in tunnels where the land asks for them."""
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -61,8 +62,9 @@ def _stretches(road: Road, world: World) -> list[Stretch]:
                 middle = min(max(each.middle, low + long / 2), high - long / 2)
                 fit = (each.length - long + abs(middle - each.middle), middle, long)
                 best = fit if best is None or fit < best else best
-        if best is None:
-            found.append(replace(each, structure=None))
+        if best is None:  # without the bridge or the tunnel
+            if each.structure is not None:
+                found.append(replace(each, structure=None))
             continue
         _, middle, long = best
         taken.append((middle - long / 2, middle + long / 2))
@@ -70,7 +72,23 @@ def _stretches(road: Road, world: World) -> list[Stretch]:
     return found
 
 
-def _kind(stretch: Stretch) -> str | None:
+class Crossing(NamedTuple):
+    """A bridge or a tunnel of the tested car's road."""
+
+    kind: Literal["bridge", "tunnel"]
+    start: float  # station in metres along the road, or the route
+    end: float
+
+
+def crossings(road: Road, world: World) -> tuple[Crossing, ...]:
+    """Returns the bridges and tunnels of a road, in driving order."""
+    found = [
+        Crossing(kind, each.start, each.end) for each in _stretches(road, world) if (kind := _kind(each))
+    ]
+    return tuple(sorted(found, key=lambda each: each.start))
+
+
+def _kind(stretch: Stretch) -> Literal["bridge", "tunnel"] | None:
     kind = (stretch.structure or stretch.land).kind
     return kind if kind in ("bridge", "tunnel") else None
 
@@ -95,7 +113,7 @@ def _span(stretch: Stretch, road: Road, world: World) -> Span | None:
                 along = member.profile.leads_along(leg.lane)
             if not along:
                 low, high = member.road.length - high, member.road.length - low
-            return Span("bridge" if kind == "bridge" else "tunnel", member.id, low, high)
+            return Span(kind, member.id, low, high)
     return None
 
 

@@ -18,7 +18,7 @@ DEEP = (0.9, 1 / 22)  # m, least depth of a deck; depth as a share of the distan
 PIER, PIERS = (1.4, 0.55), 28.0  # m along and share of the road's width across; m between piers
 FOOTING = 1.0  # m by which piers reach into the ground
 CLEAR = 5.0  # m from the road to the ceiling of a tunnel
-FACE = (3.0, 1.0)  # m of a portal's wall beside the road, and above the land there
+FACE = (3.0, 0.6)  # m of a portal's wall beside the road, and above the land there
 
 
 def solids(network: Network, ground: Ground) -> Iterator[Array]:
@@ -90,13 +90,12 @@ def _tunnel(member: NetworkRoad, span: Span, ground: Ground) -> Iterator[Array]:
         a, b = (right[at], left[at]) if way > 0 else (left[at], right[at])  # right and left of who drives in
         out = (b - a) / np.linalg.norm(b - a)
         beside = [a - FACE[0] * out, b + FACE[0] * out]
-        land = ground.height(*np.array([a, *beside, b])[:, :2].T)
-        top = max(COVER, float(land.max()) - min(a[2], b[2])) + FACE[1]
+        top = COVER + FACE[1]
         base = [_up(each, -FACE[1]) for each in beside]
         crown = [np.array([*each[:2], min(a[2], b[2]) + top]) for each in beside]
         roof = [_up(a, CLEAR), _up(b, CLEAR)]
         feet = [_up(a, -FACE[1]), _up(b, -FACE[1])]
         over = [np.array([*each[:2], crown[0][2]]) for each in (a, b)]
-        yield _quad(base[0], feet[0], over[0], crown[0])
-        yield _quad(feet[1], base[1], crown[1], over[1])
-        yield _quad(roof[0], roof[1], over[1], over[0])
+        yield _quad(crown[0], over[0], feet[0], base[0])
+        yield _quad(over[1], crown[1], base[1], feet[1])
+        yield _quad(over[0], over[1], roof[1], roof[0])

@@ -91,7 +91,7 @@ WORDS = {
     "out of lane": "left its lane",
     "fell": "fell off the road",
     "rolled": "rolled over",
-    "crashed": "crashed into the slope",
+    "crashed": "crashed",
     "sank": "drove into water",
     "stuck": "got stuck",
     "timeout": "time ran out",

@@ -66,7 +66,7 @@ WENT_ON = {
     "goal": "then came to the goal",
     "fell": "then fell",
     "rolled": "then rolled over beside the road",
-    "crashed": "then crashed into the slope",
+    "crashed": "then crashed beside the road",
     "sank": "then drove into water",
     "stuck": "then got stuck",
     "timeout": "then ran out of time",

@@ -72,9 +72,9 @@ SOON = 3.0  # s after the cause of a failure, within which a contact is told in 
 
 FAILED: dict[Cause, str] = {
     "out of lane": "left its lane to the {side}{where} {reached} {fast}{how}",
-    "fell": "fell off the road to the {side} {reached} {fast}",
+    "fell": "fell off {deck} to the {side} {reached} {fast}",
     "rolled": "left the road to the {side} and rolled over {reached} {fast}",
-    "crashed": "left the road to the {side} and crashed into the slope {reached} {fast}",
+    "crashed": "left the road to the {side} and crashed into {wall} {reached} {fast}",
     "sank": "left the road to the {side} and drove into water {reached} {fast}",
     "wrong turn": "took a wrong turn {reached} {fast}",
     "wrong way": "drove against the direction of its lane {reached} {fast}",
@@ -327,11 +327,23 @@ def _failed(
         length=road.length,
         whom=whom,
         patience=STUCK_TIME if drive.others is None else STUCK_AMONG_OTHERS,
+        **_place(road, world, cause, float(drive["s"][step])),
         contact=_touched(contact, f"after {contact.at_s:.0f} m", outcome) if contact else "hit somebody",
     )
     if contact is None or cause == "collision":
         return told
     return f"{told} and {_touched(contact, later, outcome)}" + (f"; {how}" if cause == "out of lane" else "")
+
+
+def _place(road: "Road", world: "World", cause: Cause, s: float) -> dict[str, str]:
+    """Returns what a car falls off, and what it crashes into, at a station."""
+    if cause not in ("fell", "crashed") or not world.has_ground:
+        return {"deck": "the road", "wall": "the slope"}
+    from roadgpt.network.landscape import crossings
+
+    kinds = {each.kind for each in crossings(road, world) if each.start <= s <= each.end}
+    wall = "the wall of the tunnel" if "tunnel" in kinds else "the parapet" if kinds else "the slope"
+    return {"deck": "the bridge" if kinds else "the road", "wall": wall}
 
 
 def _touched(incident: Incident, where: str, outcome: Outcome) -> str:

@@ -258,9 +258,12 @@ class Land(NamedTuple):
     y: float  # of the first row
     cell: float
     slope: float  # largest of cuttings and fills, metres up for each metre aside
+    crossings: FloatArray
+    """Stations in m of the start and the end of each bridge and tunnel, and BRIDGE or TUNNEL, (n, 3)."""
 
 
-NO_LAND = Land(np.empty((0, 0)), np.empty((0, 0)), 0.0, 0.0, 1.0, 0.0)
+BRIDGE, TUNNEL = 1.0, 2.0
+NO_LAND = Land(np.empty((0, 0)), np.empty((0, 0)), 0.0, 0.0, 1.0, 0.0, np.empty((0, 3)))
 
 
 class Ground(NamedTuple):
@@ -377,14 +380,28 @@ def beyond_rim(ground: Ground, s: float, t: float) -> float:
 
 
 @inlined
+def crossing_at(land: Land, s: float) -> float:
+    """Returns BRIDGE or TUNNEL at a station, 0 elsewhere."""
+    for n in range(land.crossings.shape[0]):
+        if land.crossings[n, 0] <= s <= land.crossings[n, 1]:
+            return BRIDGE if land.crossings[n, 2] == BRIDGE else TUNNEL
+    return 0.0
+
+
+@inlined
 def land_contact(
-    land: Land, x: float, y: float, road: float, slope: float, lateral: float, heading: float, beyond: float
-) -> tuple[float, Vector]:
-    """Returns the height of the land at a point and its normal.
+    land: Land, x: float, y: float, s: float, road: float, slope: float, lateral: float, heading: float,
+    beyond: float,
+) -> tuple[float, Vector]:  # fmt: skip
+    """Returns the height of the land at a point and its normal. In a tunnel, it is the road's surface,
+    continued.
 
     Near the rim, ``beyond`` metres from it, cells of the grid reach over the road; there the slope begins at
     the height of the rim. ``road``, ``slope`` and ``lateral`` are the height and slopes of the road's
     surface, continued to the point."""
+    crossing = crossing_at(land, s)
+    if crossing == TUNNEL:
+        return road, normal_of(slope, lateral, heading)
     u = min(max((x - land.x) / land.cell, 0.0), land.heights.shape[1] - 1.0)
     v = min(max((y - land.y) / land.cell, 0.0), land.heights.shape[0] - 1.0)
     i, j = min(int(u), land.heights.shape[1] - 2), min(int(v), land.heights.shape[0] - 2)
@@ -394,7 +411,7 @@ def land_contact(
     height = (a * (1.0 - u) + b * u) * (1.0 - v) + (c * (1.0 - u) + d * u) * v
     rise_x = ((b - a) * (1.0 - v) + (d - c) * v) / land.cell
     rise_y = ((c - a) * (1.0 - u) + (d - b) * u) / land.cell
-    if beyond < BLURRED * land.cell:
+    if beyond < BLURRED * land.cell and crossing == 0.0:
         most = land.slope * beyond
         if abs(height - road) > most:
             height = road + most if height > road else road - most
@@ -419,7 +436,7 @@ def _ground_contact(
     beyond = beyond_rim(ground, s, t)
     if beyond > 0.0 and ground.land.heights.shape[0] > 0:
         height, normal = land_contact(
-            ground.land, centre[0], centre[1], height, slope, lateral, heading, beyond
+            ground.land, centre[0], centre[1], s, height, slope, lateral, heading, beyond
         )
         return normal, (centre[2] - height) * normal[2], 1.0, SOLID
     share = min(max(-beyond / car.tyre_width + 0.5, 0.0), 1.0)
@@ -627,7 +644,7 @@ def hull_forces(mj: Any, car: Any, ground: Any, station: float, hull: FloatArray
         if ground.land.heights.shape[0] > 0:
             deepest = SOLID
             if beyond > 0.0:
-                height, normal = land_contact(ground.land, px, py, height, slope, lateral, heading, beyond)
+                height, normal = land_contact(ground.land, px, py, s, height, slope, lateral, heading, beyond)
         elif beyond > 0.0:
             continue
         nx, ny, nz = normal

@@ -16,6 +16,7 @@ from roadgpt.drive.simulators.mujoco.dynamics import (
     AT,
     BODY,
     BRAKE,
+    BRIDGE,
     PAST_VX,
     PAST_VY,
     SPIN_DOF,
@@ -24,6 +25,7 @@ from roadgpt.drive.simulators.mujoco.dynamics import (
     STEER,
     STEP,
     TCS,
+    TUNNEL,
     WHEEL_STATE,
     CarState,
     Ground,
@@ -32,6 +34,7 @@ from roadgpt.drive.simulators.mujoco.dynamics import (
     beyond_rim,
     call,
     centre_height,
+    crossing_at,
     hull_points,
     land_contact,
     model_of,
@@ -53,6 +56,8 @@ FELL, ROLLED, CRASHED, SANK = range(1, 5)
 SHOCK = (
     80.0  # m/s^2, mean of a control step, beside the road: no tyre brakes that hard, a slope stopped the car
 )
+BESIDE_WALL = 0.9  # m from a wall to the middle of the car that touches it
+CONTAINED = 10.4  # m/s across a parapet up to which it holds a car (EN 1317-2, N2: 110 km/h at 20 degrees)
 NO_WATER = -1e6  # m
 FALLEN_OVER = 0.5  # cosine of 60 degrees between car and road: a saloon that leans more overturns
 _ROW = {name: place for place, name in enumerate(COLUMNS)}
@@ -185,13 +190,17 @@ class Vehicle:
 
 
 def _land(road: "Road", world: "World") -> Land:
-    from roadgpt.network.landscape import ground_around  # only drives over land load it
+    from roadgpt.network.landscape import crossings, ground_around  # only drives over land load it
 
     ground = ground_around(road, world)
     x, y = np.meshgrid(ground.x, ground.y)
     water = np.nan_to_num(ground.water_level(x, y), nan=NO_WATER)
     of = ground.layers
-    return Land(ground.heights, water, of.x, of.y, of.cell, of.slope)
+    walls = [
+        (each.start, each.end, TUNNEL if each.kind == "tunnel" else BRIDGE) for each in crossings(road, world)
+    ]
+    places = np.array(walls, float).reshape(-1, 3)
+    return Land(ground.heights, water, of.x, of.y, of.cell, of.slope, places)
 
 
 def plane(friction: float = 1.0, grade: float = 0.0, size: float = 5000.0, car: Car = ETK_LIKE) -> Vehicle:
@@ -253,8 +262,15 @@ def _look(mj: MujocoHandles, car: Any, ground: Ground, car_state: CarState, row:
     nx, ny, nz = normal_of(slope, lateral, heading)
     beyond, land = beyond_rim(ground, s, t), ground.land
     if land.heights.shape[0] > 0:
+        crossing = crossing_at(land, s)
+        if crossing > 0.0 and -BESIDE_WALL < beyond < 0.0:
+            aside = abs(vy * math.cos(heading) - vx * math.sin(heading))
+            if crossing == TUNNEL or aside < CONTAINED:
+                return CRASHED
+        if beyond > 0.0 and crossing == BRIDGE and z - car.cg_height < height - FALLEN:
+            return FELL
         if beyond > 0.0:
-            height, (nx, ny, nz) = land_contact(land, x, y, height, slope, lateral, heading, beyond)
+            height, (nx, ny, nz) = land_contact(land, x, y, s, height, slope, lateral, heading, beyond)
             i = min(max(int((x - land.x) / land.cell + 0.5), 0), land.heights.shape[1] - 1)
             j = min(max(int((y - land.y) / land.cell + 0.5), 0), land.heights.shape[0] - 1)
             if z < land.water[j, i]:
