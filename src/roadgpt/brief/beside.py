@@ -8,6 +8,7 @@ import tomllib
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
+from roadgpt.brief.scene import LANDS
 from roadgpt.brief.words import SURFACES
 from roadgpt.reading import read_text
 
@@ -35,6 +36,8 @@ def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str
                 f"{NOT_BUILT[name]} is built as a part of a route, such as '{ON_ROUTES[name]}'; the road is"
                 " made without it"
             )
+        elif name in LANDS:
+            continue
         elif name in NOT_BUILT:
             yield f"{NOT_BUILT[name]} is not built yet; the road is made without it"
         elif name not in SURFACES:

@@ -3,7 +3,7 @@
 It is told in the terms of OpenSCENARIO: somebody is somewhere at first, and then does one thing after
 another, each begun by a condition. A number may be a range, from which each drive draws."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Annotated, Literal, NamedTuple, Self, get_args
 
 from pydantic import AfterValidator, StringConstraints, model_validator
@@ -316,7 +316,7 @@ STRUCTURES: tuple[Landform, ...] = ("bridge", "tunnel", "cutting", "embankment")
 
 
 class Land(Frozen):
-    """Something of the landscape that the road lies in, or several alike. It is understood, not built."""
+    """Something of the landscape that the road lies in, or several alike."""
 
     kind: Landform
     lie: Lie | None = None
@@ -475,9 +475,24 @@ def scene_text(scene: Scene) -> str:
     return "; ".join(parts_said(scene))
 
 
+LANDS: Mapping[str, Land] = {
+    "water": Land(kind="lake", lie="along"),
+    "trees": Land(kind="forest", lie="through"),
+    "bridge": Land(kind="bridge"),
+    "tunnel": Land(kind="tunnel"),
+}
+"""The landscape that names in ``Brief.beside`` mean."""
+
+
+def with_lands(scene: Scene, beside: Iterable[str]) -> Scene:
+    """Returns a scene with the landscape that the names in ``Brief.beside`` mean, if it has none itself."""
+    lands = tuple(LANDS[name] for name in beside if name in LANDS)
+    return scene if scene.landscape or not lands else scene.model_copy(update={"landscape": lands})
+
+
 def land_remark(scene: Scene) -> str:
-    """Returns a sentence on the landscape of a scene, which is not built; empty if there is none."""
-    lands = ", ".join(map(str, scene.landscape))
+    """Returns a sentence on what is not built of the landscape of a scene; empty if all of it is."""
+    lands = ", ".join(str(land) for land in scene.landscape if land.kind == "town")
     return f"not built yet: {lands}; the road is made without it" if lands else ""
 
 

@@ -45,6 +45,7 @@ HEADINGS = {
     "Exchange": {
         "export": "Write roads for other tools: OpenDRIVE, OpenSCENARIO and others.",
         "import": "Read a road from an OpenDRIVE file.",
+        "ground": "Make land from words, or read heights from a file, for roads to lie in.",
     },
     "Set up": {
         "config": "Show all settings and where each comes from; list plug-ins.",

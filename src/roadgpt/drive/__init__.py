@@ -164,7 +164,8 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None, r
     or are replayed. ``road`` is None if it is not known yet."""
     from roadgpt.road import World
 
-    if (replays or world.scene != Scene()) and not getattr(simulator, "moves_others", False):
+    asked = world.scene.model_copy(update={"landscape": ()})
+    if (replays or asked != Scene()) and not getattr(simulator, "moves_others", False):
         lacks = "move others on the road yet; leave scene and tracks out"
         if not (replays or world.scene.has_others):
             lacks = "apply the weather, light, surface and speed of a scene yet; leave the scene out"

@@ -29,7 +29,7 @@ from roadgpt.brief.amount import Amount, Frozen
 from roadgpt.brief.beside import friction_of
 from roadgpt.brief.model import CentreLine
 from roadgpt.brief.plan import read_scene, scene_plan
-from roadgpt.brief.scene import Scene
+from roadgpt.brief.scene import Scene, with_lands
 from roadgpt.brief.visibility import weather_drawn
 from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, USUAL_MAP
 from roadgpt.errors import BriefError, UsageError
@@ -402,11 +402,18 @@ class World(BaseModel):
         return World.model_validate(kept | values)
 
     def in_scene_of(self, brief: "Brief | None") -> "World":
-        """Returns the World with the scene of a Brief. A scene that was given to this World is kept, even if
-        it is empty."""
-        if brief is None or brief.scene == Scene() or "scene" in self.model_fields_set:
+        """Returns the World with the scene of a Brief, with the landscape that its words name, and with
+        mountains around a mountain road. A scene, or land, that was given to this World is kept, even if it
+        is empty."""
+        if brief is None:
             return self
-        return self.changed(scene=brief.scene)
+        changes: dict[str, Any] = {}
+        scene = with_lands(brief.scene, brief.beside)
+        if scene != Scene() and "scene" not in self.model_fields_set:
+            changes["scene"] = scene
+        if brief.surroundings == "mountain" and "ground" not in self.site.model_fields_set:
+            changes["ground"] = "mountain"
+        return self.changed(**changes) if changes else self
 
     def in_weather_of(self, seed: int) -> "World":
         """Returns the World with the fog and rain that a drive with this seed draws from their ranges."""

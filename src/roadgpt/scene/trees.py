@@ -21,6 +21,7 @@ from roadgpt.scene.shade import Colour, air, hazy
 
 SEED = 11
 SIDE = 128  # texels; width and height of a picture
+AVENUE = 9.0  # m between the trees of an avenue
 BROAD, CONIFERS = 3, 2  # numbers of pictures of broad-leaved trees and of conifers
 CLEAR = 9.0  # m from the outer edge of the shoulder to the nearest tree
 EACH = 210.0  # m^2 of land per tree, before trees near roads are removed
@@ -51,7 +52,9 @@ def plant(ground: Ground, lands: Sequence[Land] = ()) -> Trees:
     spots = middles[rng.integers(len(middles), size=count)] + rng.normal(0.0, 13.0, (count, 2))
     alone = rng.random(count) < (0.8 if is_forest else 0.25)
     spots[alone] = rng.uniform((x0, y0), (x1, y1), (int(alone.sum()), 2))
-    looks = rng.integers(BROAD + CONIFERS, size=count)
+    spots, lined = _with_avenue(spots, ground, any(land.kind == "tree_lined" for land in lands))
+    count = len(spots)
+    looks = np.where(np.arange(count) < lined, 0, rng.integers(BROAD + CONIFERS, size=count))
     heights = np.where(looks < BROAD, rng.uniform(6.0, 11.0, count), rng.uniform(8.0, 14.0, count))
     widths = heights * np.where(looks < BROAD, rng.uniform(0.85, 1.1, count), rng.uniform(0.42, 0.5, count))
     tints = rng.uniform(0.8, 1.12, count)
@@ -65,6 +68,21 @@ def plant(ground: Ground, lands: Sequence[Land] = ()) -> Trees:
     kept = inside & dry & (away > CLEAR + widths / 2)
     foot = np.column_stack([spots, z - 0.15])
     return Trees(foot[kept], np.column_stack([heights, widths])[kept], looks[kept], tints[kept])
+
+
+def _with_avenue(spots: Array, ground: Ground, is_lined: bool) -> tuple[Array, int]:
+    """Returns spots with rows of trees along the rims of the roads before them, and the number of these."""
+    if not is_lined:
+        return spots, 0
+    rows = []
+    for ring in ground.pavement.rims:
+        along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(ring[:, :2], axis=0).T))]
+        at = np.arange(AVENUE / 2, along[-1], AVENUE)
+        line = np.column_stack([np.interp(at, along, ring[:, k]) for k in (0, 1)])
+        ahead = np.gradient(line, axis=0)
+        ahead /= np.maximum(np.hypot(*ahead.T), 1e-9)[:, None]
+        rows.append(line + (CLEAR + AVENUE / 2) * np.column_stack([ahead[:, 1], -ahead[:, 0]]))
+    return np.concatenate([*rows, spots]), sum(map(len, rows))
 
 
 @cache

@@ -1,6 +1,7 @@
-"""Commands for files of other tools: ``roadgpt export`` and ``import``."""
+"""Commands for files of other tools: ``roadgpt export``, ``import`` and ``ground``."""
 
 import json
+from dataclasses import replace
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -8,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from roadgpt.cli import options, roads
-from roadgpt.cli.options import PATH, Argument, GroupedCommand, Option, named, whole
+from roadgpt.cli.options import PATH, Argument, GroupedCommand, Heading, Option, named, whole
 from roadgpt.cli.streams import warn
 from roadgpt.errors import RoadGPTError, UsageError, command_line, explained
 
@@ -28,7 +29,7 @@ EXPORT_OPTIONS = (
     options.formats_option("--to formats", FORMATS, required=True, advice=TO),
     *options.CHOICES,
     options.out("Folder for the files.", default=Path("exports")),
-    *named(options.WORLD, "speed_limit", *roads.LANES, "friction"),
+    *named(options.WORLD, "speed_limit", *roads.LANES, "friction", "ground"),
     *(*named(options.SETUP, "geometry"), options.QUIET),
 )
 
@@ -102,6 +103,85 @@ def _write_runs(files: tuple[str, ...], formats: tuple[str, ...], out: Path | No
             if not quiet:
                 click.echo(folder)
     return 0
+
+
+GROUND_OPTIONS = (
+    Argument("words...", "DESCRIPTION|FILE", "Say what land you want, or name a file of heights."),
+    Option("--size", "Side of the land, m.", options.measure(100, 8000), 1000.0),
+    Option("--cell", "Distance between heights, m.", options.measure(0.5, 100), 2.0),
+    options.seed("Seed of the land.", 0),
+    Option("--out", "File for the heights: .png (16 bits, with world file), .asc or .npy. [default: land.png]",
+           options.PATH, metavar="FILE", heading=Heading.FILES),
+    options.json_option(heading=Heading.OUTPUT),
+)  # fmt: skip
+
+
+@click.command(cls=GroupedCommand, params=[*GROUND_OPTIONS])
+def ground(
+    words: tuple[str, ...], size: float, cell: float, seed: int, out: Path | None, as_json: bool
+) -> None:
+    """Make land from words, or read heights from a file, and write them.
+
+    Roads are laid into the land with --ground of run, drive, export and others. FILE is a 16-bit PNG, an
+    ESRI ASCII grid (.asc), a NumPy array (.npy) or a GeoTIFF (.tif).
+
+    \b
+    roadgpt ground "a valley between two ridges" --size 1000 --seed 3
+    roadgpt ground alps.tif --out alps.png
+    roadgpt run "5 turns" --ground land.png"""
+    import numpy as np
+
+    from roadgpt.ground.files import SUFFIXES, read_ground, write_ground
+    from roadgpt.ground.relief import Way, made, stretches
+
+    text, typed = " ".join(words), options.typed(click.get_current_context())
+    if len(words) == 1 and Path(text).suffix.lower() in SUFFIXES:
+        if unheeded := sorted(typed & {"size", "seed", "cell"}):
+            raise UsageError(f"a file has its own heights; leave out --{unheeded[0]}")
+        relief, unused = read_ground(Path(text)).relief, ()
+    else:
+        from roadgpt.ground.words import land_in
+
+        wish = land_in(text)
+        if wish.kind is None and not wish.lands:
+            raise UsageError(
+                f"'{text}' names no land; say flat, rolling, hilly, mountain, valley, ridge, lake ..."
+            )
+        unused = wish.unused
+        way = Way.through_the_middle(size, 100.0, seed)
+        box = np.zeros(2), np.full(2, size)
+        kind = wish.kind or "hilly"
+        relief = made(way, kind, stretches(wish.lands, size), seed, box)
+        x = np.arange(0.0, size + cell / 2, cell)
+        grid = relief.at(*map(np.ravel, np.meshgrid(x, x))).reshape(len(x), len(x))
+        relief = replace(relief, x=0.0, y=0.0, cell=cell, heights=grid)
+        out = out or Path("land.png")
+    if out is not None:
+        with explained(RoadGPTError, f"cannot write {out}", "name another file with --out"):
+            write_ground(relief.heights, relief.cell, out)
+    steep = np.hypot(*np.gradient(relief.heights, relief.cell))
+    rows, columns = relief.heights.shape
+    told: dict[str, Any] = {
+        "file": None if out is None else str(out),
+        "width": (columns - 1) * relief.cell,
+        "height": (rows - 1) * relief.cell,
+        "cell": relief.cell,
+        "lowest": float(relief.heights.min()),
+        "highest": float(relief.heights.max()),
+        "mean_slope": float(steep.mean()),
+        "unused": list(unused),
+    }
+    if as_json:
+        return click.echo(json.dumps(told))
+    for word in unused:
+        warn(f"not used: '{word}'")
+    click.echo(
+        f"{told['width']:.0f} m x {told['height']:.0f} m, a height every {told['cell']:g} m: "
+        f"{told['lowest']:.1f} to {told['highest']:.1f} m, mean slope {100 * told['mean_slope']:.0f} %"
+    )
+    if out is not None:
+        click.echo(str(out))
+    return None
 
 
 IMPORT_OPTIONS = (
