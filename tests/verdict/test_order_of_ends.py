@@ -37,14 +37,15 @@ class OnRails:
 
     def __init__(self, way: list[Step]) -> None:
         self.way = iter(way)
-        self.s, self.has_fallen, self.row = 2.5, False, np.zeros(len(COLUMNS))
+        self.s, self.mishap, self.row = 2.5, None, np.zeros(len(COLUMNS))
         self._tell(IN)
 
     def put(self, s: float, t: float, speed: float = 0.0) -> None:
         assert (s, t, speed) == (2.5, IN, 0.0)
 
     def move(self, steer: float, throttle: float, brake: float) -> None:
-        on, t, self.has_fallen = next(self.way, (FAST, IN, False))
+        on, t, has_fallen = next(self.way, (FAST, IN, False))
+        self.mishap = "fell" if has_fallen else None
         self.s += on
         self._tell(t)
 

@@ -110,7 +110,7 @@ GROUND_OPTIONS = (
     Option("--size", "Side of the land, m.", options.measure(100, 8000), 1000.0),
     Option("--cell", "Distance between heights, m.", options.measure(0.5, 100), 2.0),
     options.seed("Seed of the land.", 0),
-    Option("--out", "File for the heights: .png (16 bits, with world file), .asc or .npy. [default: land.png]",
+    Option("--out", "File for the heights: .png (16 bits and a world file), .asc, .npy. [default: land.png]",
            options.PATH, metavar="FILE", heading=Heading.FILES),
     options.json_option(heading=Heading.OUTPUT),
 )  # fmt: skip
@@ -135,18 +135,17 @@ def ground(
     from roadgpt.ground.relief import Way, made, stretches
 
     text, typed = " ".join(words), options.typed(click.get_current_context())
+    unused: tuple[str, ...] = ()
     if len(words) == 1 and Path(text).suffix.lower() in SUFFIXES:
         if unheeded := sorted(typed & {"size", "seed", "cell"}):
             raise UsageError(f"a file has its own heights; leave out --{unheeded[0]}")
-        relief, unused = read_ground(Path(text)).relief, ()
+        relief = read_ground(Path(text)).relief
     else:
         from roadgpt.ground.words import land_in
 
         wish = land_in(text)
         if wish.kind is None and not wish.lands:
-            raise UsageError(
-                f"'{text}' names no land; say flat, rolling, hilly, mountain, valley, ridge, lake ..."
-            )
+            raise UsageError(f"'{text}' names no land; say flat, rolling, hilly, mountain, valley, lake ...")
         unused = wish.unused
         way = Way.through_the_middle(size, 100.0, seed)
         box = np.zeros(2), np.full(2, size)
