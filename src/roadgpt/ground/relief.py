@@ -73,6 +73,12 @@ class Relief:
     beyond: Array
     """Points ``(n, 3)`` in metres outside the grid, as far as the horizon; may be empty."""
 
+    @property
+    def size(self) -> tuple[float, float]:
+        """The extent along x and y in metres."""
+        rows, columns = self.heights.shape
+        return (columns - 1) * self.cell, (rows - 1) * self.cell
+
     def at(self, x: Array, y: Array) -> Array:
         """Returns the heights ``(n,)`` in metres at points ``x``, ``y``, ``(n,)`` each."""
         return sampled(self.heights, self.x, self.y, self.cell, np.asarray(x, float), np.asarray(y, float))

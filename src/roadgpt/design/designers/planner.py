@@ -10,6 +10,8 @@ import numpy as np
 from roadgpt.brief.model import Brief
 from roadgpt.design.road_search import DraftSearch
 from roadgpt.design.variety import Shapes
+from roadgpt.errors import DesignError
+from roadgpt.ground.given import GivenGround
 from roadgpt.road import Design, World
 
 
@@ -28,10 +30,17 @@ class Planner:
         differs from the earlier designs as far as possible; for networks, these are ignored. Only the number
         of notes matters, because this number changes the seed. For errors see ``roadgpt.draft``."""
         rng = np.random.default_rng([seed, len(notes)])
+        given = world.site.ground
         if brief.is_of_network:
+            if isinstance(given, GivenGround):
+                raise DesignError("networks are not laid on given land yet; leave --ground out")
             from roadgpt.design.network_search import draft_network
 
             return draft_network(brief, world, rng)
         design, road = DraftSearch(brief, world, self._shapes.of(earlier), rng).run()
         self._shapes.remember(design, road)
-        return design
+        if not isinstance(given, GivenGround):
+            return design
+        from roadgpt.design.on_land import placed
+
+        return placed(design, brief, world, given.relief)
