@@ -42,6 +42,7 @@ def placed(design: Design, brief: Brief, world: World, relief: Relief) -> Design
             land = relief.at(*_moved(line[:, :2], x, y, theta).T)
             found = _grades(segments, s, land, world.limits.max_grade, is_bound)
             if found is None:
+                best = min(best, (np.inf, "its grades do not follow the land"))
                 continue
             z, grades, deep = found
             if deep > DEEPEST:

@@ -8,9 +8,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import plan, scene_plan
 from roadgpt.brief.scene import Scene, land_remark, scene_text
 from roadgpt.brief.scene_fit import fitted
-from roadgpt.brief.words import LARGEST_MAP
 from roadgpt.design.road_search import sufficient_map
-from roadgpt.ground.given import GivenGround
 from roadgpt.road import World
 from roadgpt.road.world import KMH, Limits
 
@@ -37,8 +35,6 @@ def world_for(brief: Brief | None, world: World) -> World:
                 found = found.changed(speed_limit=max(found.first_speed, usual))
         brief = fitted(brief, found.scene, found.limits.speed_limit, world.given_map)
     found = found.with_lanes_of(brief)
-    if isinstance(given := found.site.ground, GivenGround) and world.given_map is None:
-        return found.changed(map_size=min(max(given.relief.size), LARGEST_MAP))
     if brief is None or world.given_map is not None:
         return found
     if brief.map_size is not None:

@@ -18,6 +18,8 @@ from roadgpt.ground.grading import Layers
 from roadgpt.ground.relief import Relief
 
 SLOPE = 0.5  # metres up or down for each metre aside: 1:2, usual for earthworks (FHWA, AASHTO 4.8.4)
+STEEPER, STEEPEST = 1.5, 3.0  # than the land, of slopes on steep land; metres up for each metre aside at most
+ASIDE = 10.0  # m, where the slope of the land is measured
 FINEST, MOST_CELLS = 1.0, 1_100_000  # m, smallest cell; cells of a grid at most
 
 
@@ -32,6 +34,18 @@ def _left_of(ring: Array) -> Array:
     both = ahead + np.roll(ahead, 1, axis=0)
     left = np.column_stack([-both[:, 1], both[:, 0]])
     return np.asarray(left / np.maximum(np.hypot(*left.T), 1e-9)[:, None])
+
+
+def slope_for(relief: Relief, points: Array) -> float:
+    """Returns the slope of cuttings and fills for a road through points ``(n, 3)``: SLOPE, or steeper where
+    the land is so steep that slopes of SLOPE would hardly end."""
+    x, y = np.asarray(points[:, 0]), np.asarray(points[:, 1])
+    rise_x, rise_y = (
+        (relief.at(x + dx, y + dy) - relief.at(x - dx, y - dy)) / (2 * ASIDE)
+        for dx, dy in ((ASIDE, 0.0), (0.0, ASIDE))
+    )
+    steep = float(np.quantile(np.hypot(rise_x, rise_y), 0.95))
+    return float(np.clip(STEEPER * steep, SLOPE, STEEPEST))
 
 
 class Span(NamedTuple):

@@ -10,7 +10,7 @@ import numpy as np
 
 from roadgpt.errors import UsageError
 from roadgpt.ground.given import GivenGround
-from roadgpt.ground.ground import Ground, Pavement, Span
+from roadgpt.ground.ground import SLOPE, Ground, Pavement, Span, slope_for
 from roadgpt.ground.relief import Kind, Relief, Stretch, Way, level_land, made, stretches
 from roadgpt.network.network import NetworkRoad
 from roadgpt.network.road_or_route import is_route, network_of
@@ -38,7 +38,10 @@ def ground_around(road: Road, world: World) -> Ground:
         return Ground.of(level_land(way, level), Pavement(np.empty((0, 3, 3)), ()))
     parts = _stretches(road, world)
     spans = [span for each in parts if (span := _span(each, road, world)) is not None]
-    return Ground.of(_land(way, world, parts), pavement_of(network, spans))
+    relief = _land(way, world, parts)
+    is_given = isinstance(world.site.ground, GivenGround)
+    slope = slope_for(relief, way.others) if is_given else SLOPE
+    return Ground.of(relief, pavement_of(network, spans), slope)
 
 
 def _stretches(road: Road, world: World) -> list[Stretch]:

@@ -216,6 +216,14 @@ class Site(BaseModel):
         "heights. [default: as described]",
     )  # fmt: skip
 
+    @model_validator(mode="before")
+    @classmethod
+    def _as_large_as_given_land(cls, data: Any) -> Any:
+        given = data.get("ground") if isinstance(data, Mapping) else None
+        if not isinstance(given, GivenGround) or "map_size" in data:
+            return data
+        return {**data, "map_size": min(max(given.relief.size), LARGEST_MAP)}
+
     @property
     def made_ground(self) -> tuple[Any, int] | None:
         """The kind and the seed of the land; None if none is asked for, or it is given."""

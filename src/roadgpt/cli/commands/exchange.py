@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from roadgpt.brief.words import LARGEST_MAP
 from roadgpt.cli import options, roads
 from roadgpt.cli.options import PATH, Argument, GroupedCommand, Heading, Option, named, whole
 from roadgpt.cli.streams import warn
@@ -16,6 +17,7 @@ from roadgpt.errors import RoadGPTError, UsageError, command_line, explained
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from roadgpt.ground.relief import Relief
     from roadgpt.network import Leg
     from roadgpt.network.opendrive import ImportedMap
     from roadgpt.network.source import RoadSource
@@ -112,15 +114,23 @@ GROUND_OPTIONS = (
     options.seed("Seed of the land.", 0),
     Option("--out", "File for the heights: .png (16 bits and a world file), .asc, .npy. [default: land.png]",
            options.PATH, metavar="FILE", heading=Heading.FILES),
+    Option("--from start", "Where a road over the land begins: --from X,Y, in metres.", metavar="X,Y"),
+    Option("--to goal", "Where it ends.", metavar="X,Y"),
+    Option("--max-grade", "Steepest grade of the road, %.", options.measure(1, 15), 8.0),
+    Option("--min-radius", "Least radius of its bends, m.", options.measure(14.5, 500), 20.0),
+    Option("--road", "Road file to write. [default: road.json]", options.PATH, metavar="FILE",
+           heading=Heading.FILES),
     options.json_option(heading=Heading.OUTPUT),
 )  # fmt: skip
 
 
 @click.command(cls=GroupedCommand, params=[*GROUND_OPTIONS])
 def ground(
-    words: tuple[str, ...], size: float, cell: float, seed: int, out: Path | None, as_json: bool
+    words: tuple[str, ...], size: float, cell: float, seed: int, out: Path | None, as_json: bool, **road: Any
 ) -> None:
-    """Make land from words, or read heights from a file, and write them.
+    """Make land from words, or read heights from a file, and write them; or find a way for a road over it.
+
+    With --from and --to, the road keeps the grade and the radius, and needs little earthworks.
 
     Roads are laid into the land with --ground of run, drive, export and others. FILE is a 16-bit PNG, an
     ESRI ASCII grid (.asc), a NumPy array (.npy) or a GeoTIFF (.tif).
@@ -128,6 +138,7 @@ def ground(
     \b
     roadgpt ground "a valley between two ridges" --size 1000 --seed 3
     roadgpt ground alps.tif --out alps.png
+    roadgpt ground alps.tif --from 100,200 --to 900,1400 --max-grade 8
     roadgpt run "5 turns" --ground land.png"""
     import numpy as np
 
@@ -170,6 +181,8 @@ def ground(
         "mean_slope": float(steep.mean()),
         "unused": list(unused),
     }
+    if road["start"] or road["goal"]:
+        told |= _way(relief, **road)
     if as_json:
         return click.echo(json.dumps(told))
     for word in unused:
@@ -178,9 +191,41 @@ def ground(
         f"{told['width']:.0f} m x {told['height']:.0f} m, a height every {told['cell']:g} m: "
         f"{told['lowest']:.1f} to {told['highest']:.1f} m, mean slope {100 * told['mean_slope']:.0f} %"
     )
-    if out is not None:
-        click.echo(str(out))
+    if "road" in told:
+        click.echo(
+            f"road of {told['length']:.0f} m, {told['deepest']:.1f} m above or below the land at most: "
+            f"cut {told['cut']:.0f} m3, fill {told['fill']:.0f} m3 with slopes of 1:{1 / told['slope']:.2g}"
+        )
+    click.echo("\n".join(str(told[name]) for name in ("file", "road") if told.get(name)))
     return None
+
+
+def _way(
+    relief: "Relief",
+    start: str | None,
+    goal: str | None,
+    max_grade: float,
+    min_radius: float,
+    road: Path | None,
+) -> dict[str, Any]:
+    """Finds a way over land, writes it as a road file, and returns what is told about it."""
+    from roadgpt.ground.ground import Ground, slope_for
+    from roadgpt.ground.wayfinding import way_between
+    from roadgpt.network import network_of
+    from roadgpt.network.surface import pavement_of
+    from roadgpt.road import Road, World
+
+    if not (start and goal):
+        raise UsageError("a road needs both ends; give --from X,Y and --to X,Y")
+    found = way_between(relief, _point(start), _point(goal), max_grade / 100, min_radius)
+    made, path = Road(found.plan, found.elevation), road or Path("road.json")
+    world = World().changed(map_size=min(max(relief.size), LARGEST_MAP))
+    slope = slope_for(relief, made.centreline())
+    works = Ground.of(relief, pavement_of(network_of(made, world)), slope).earthworks
+    with explained(RoadGPTError, f"cannot write {path}", "name another file with --road"):
+        path.write_text(json.dumps(made.to_json()) + "\n", encoding="utf-8")
+    told = {"road": str(path), "length": made.length, "deepest": found.deepest, "slope": slope}
+    return {**told, "cut": works.cut, "fill": works.fill}
 
 
 IMPORT_OPTIONS = (

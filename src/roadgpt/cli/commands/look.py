@@ -56,7 +56,8 @@ VIEW_OPTIONS = (
     options.OPEN.but(heading=Heading.FILES),
     Option("--format formats", "Draw pictures instead of the page: png, svg, pdf.", picture_formats,
            metavar="FORMAT,...", heading=Heading.FILES),
-    *(options.AXES, *named(options.WORLD, "map_size"), *named(options.SETUP, "geometry"), options.QUIET),
+    *(options.AXES, *named(options.WORLD, "map_size", "ground"), *named(options.SETUP, "geometry")),
+    options.QUIET,
 )  # fmt: skip
 
 
@@ -150,7 +151,7 @@ FILM_OPTIONS = (
     Option("--all is_all", "Film every road in a folder; the film of a run is saved in the run's own folder.",
            bool),
     *options.CHOICES,
-    *named(options.WORLD, "map_size"),
+    *named(options.WORLD, "map_size", "ground"),
     *named(options.SETUP, "geometry"),
     options.QUIET,
 )

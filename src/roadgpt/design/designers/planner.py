@@ -14,6 +14,8 @@ from roadgpt.errors import DesignError
 from roadgpt.ground.given import GivenGround
 from roadgpt.road import Design, World
 
+DRAFTS_ON_LAND = 5  # drafts for which a place on given land is sought
+
 
 class Planner:
     """The default designer: tries random drafts until one is accepted."""
@@ -37,10 +39,17 @@ class Planner:
             from roadgpt.design.network_search import draft_network
 
             return draft_network(brief, world, rng)
-        design, road = DraftSearch(brief, world, self._shapes.of(earlier), rng).run()
-        self._shapes.remember(design, road)
-        if not isinstance(given, GivenGround):
-            return design
-        from roadgpt.design.on_land import placed
+        for left in reversed(range(DRAFTS_ON_LAND if isinstance(given, GivenGround) else 1)):
+            design, road = DraftSearch(brief, world, self._shapes.of(earlier), rng).run()
+            if isinstance(given, GivenGround):
+                from roadgpt.design.on_land import placed
 
-        return placed(design, brief, world, given.relief)
+                try:
+                    design = placed(design, brief, world, given.relief)
+                except DesignError:
+                    if not left:
+                        raise
+                    continue
+            break
+        self._shapes.remember(design, road)
+        return design
