@@ -64,9 +64,9 @@ def from_file(of: World) -> World:
     return World.model_validate(json.loads(of.model_dump_json()))
 
 
-def a_run(folder: Path, path: str = "x.npy") -> Run:
-    """A road of 120 m on the land, not driven, in a folder of runs."""
-    run = perform("straight 120", 3, world(path), ON_PAPER)
+def a_run(folder: Path, path: str = "x.npy", index: int = 1) -> Run:
+    """A road of 120 m on land of its own, not driven, in a folder of runs."""
+    run = perform("straight 120", 3, world(path, index - 1), ON_PAPER, index)
     write_run(run, folder)
     return run
 
@@ -74,7 +74,7 @@ def a_run(folder: Path, path: str = "x.npy") -> Run:
 def test_the_heights_go_along_wherever_the_world_goes() -> None:
     first = world()
     later = first.changed(friction=0.6, scene="medium")
-    again = pickle.loads(pickle.dumps(later))  # noqa: S301
+    again = pickle.loads(pickle.dumps(later))
     for each in (first, later, again, first.model_copy(), again.changed(map_size=300)):
         assert heights_of(each).tolist() == land().heights.tolist()
     assert again == later
@@ -145,6 +145,17 @@ def cut_off(path: Path) -> None:
     path.write_bytes(save_ground(named("x.npy", land()))[:500])
 
 
+def flipped(path: Path) -> None:
+    content = bytearray(save_ground(named("x.npy", land())))
+    content[400:420] = bytes(20)
+    path.write_bytes(content)
+
+
+def one_array(path: Path) -> None:
+    with path.open("wb") as file:
+        np.save(file, land().heights)
+
+
 @pytest.mark.parametrize(
     ("write", "said"),
     [
@@ -156,8 +167,21 @@ def cut_off(path: Path) -> None:
         (lambda path: path.write_bytes(b""), "is missing"),
         (lambda path: path.write_text("no heights"), "is missing"),
         (cut_off, "is missing"),
+        (flipped, "is missing"),
+        (one_array, "is missing"),
     ],
-    ids=["other", "other cell", "no cell", "two cells", "objects", "empty", "text", "cut off"],
+    ids=[
+        "other",
+        "other cell",
+        "no cell",
+        "two cells",
+        "objects",
+        "empty",
+        "text",
+        "cut",
+        "flipped",
+        "array",
+    ],
 )
 def test_what_a_folder_holds_instead_is_refused(
     write: Callable[[Path], object], said: str, tmp_path: Path
@@ -185,6 +209,14 @@ def test_a_run_is_read_again_with_its_heights(tmp_path: Path) -> None:
     assert heights_of(World().changed(**source.world)).tolist() == land().heights.tolist()
 
 
+def test_runs_on_different_land_in_one_folder_keep_their_own(tmp_path: Path) -> None:
+    for index in (1, 2):
+        a_run(tmp_path, index=index)
+    for index in (1, 2):
+        again = read_run(tmp_path / "runs" / f"{index:04d}")
+        assert heights_of(again.world).tolist() == land(index - 1).heights.tolist()
+
+
 def test_a_shared_run_never_makes_the_program_open_the_file_that_it_names(
     tmp_path: Path, opened: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -199,10 +231,10 @@ def test_a_shared_run_never_makes_the_program_open_the_file_that_it_names(
     again = read_run(tmp_path / "shared" / "runs" / "0001")
     assert again.request.world.site.ground == run.request.world.site.ground
     source = read_source(tmp_path / "shared" / "runs" / "0001" / "road.json")
+    assert again.road is not None
     for shared in (again.world, World().changed(**source.world)):
         assert not isinstance(shared.site.ground, GivenGround)
         with pytest.raises(UsageError, match="not at hand"):
-            assert again.road is not None
             ground_around(again.road, shared)
     assert any(path.endswith("run.json") for path in opened)
     assert not [path for path in opened if "secret" in path]

@@ -21,6 +21,7 @@ from roadgpt.ground.relief import cubic_at
 
 Integers = NDArray[np.int32]
 BUCKET = 4  # cells of the grid along a side of a bucket of triangles
+DIP = 4.0  # m of land below a cutting, or above a fill, behind which it may go on
 REACH = 1.5  # cells around a segment in which it is known at once
 TINY = 1e-9
 NONE = -1
@@ -165,7 +166,7 @@ def spread(
                 if height < best[j, i]:
                     best[j, i], owner[j, i] = height, n
                     at = j * columns + i
-                    if np.isnan(roads[j, i]) and height < sign * land[j, i] and waits[at] == 0:
+                    if np.isnan(roads[j, i]) and height < sign * land[j, i] + DIP and waits[at] == 0:
                         queue[(first + count) % len(queue)] = at
                         waits[at] = 1
                         count += 1
@@ -183,7 +184,7 @@ def spread(
                 if height < best[j, i]:
                     best[j, i], owner[j, i] = height, n
                     to = j * columns + i
-                    if height < sign * land[j, i] and waits[to] == 0:
+                    if height < sign * land[j, i] + DIP and waits[to] == 0:
                         queue[(first + count) % len(queue)] = to
                         waits[to] = 1
                         count += 1

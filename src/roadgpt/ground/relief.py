@@ -27,6 +27,8 @@ FREE = 4.0  # m beside the centre line, up to which the land has the height of t
 SHORE = 1.2  # m, least height of any road above water near it
 DEEP = 3.0  # m of water
 BANK, BEACH = 0.25, 0.12  # slopes below and above the edge of water
+BESIDE = 45.0  # m beside a stretch that is crossed, within which roads belong to it
+DAMMED = 70.0  # m from the edge of water within which roads are not lower than it
 STRAIGHT_ON = 20.0  # m between the points by which a way is continued before its start and behind its end
 
 
@@ -335,7 +337,7 @@ def _shaped(
         if stretch.land.kind in ("lake", "coast", "river"):
             heights, water = _with_water(heights, water, stretch, side, places, base, way, wave)
         else:
-            heights = heights + _rise(stretch, side, places, wave)
+            heights = heights + _rise(stretch, side, places, wave, way)
     return heights, water
 
 
@@ -362,38 +364,79 @@ def _chosen(seed: int) -> float:
     return 1.0 if np.random.default_rng([seed, 5]).random() < 0.5 else -1.0
 
 
-def _rise(stretch: Stretch, side: float, places: _Places, wave: Array) -> Array:
+def _across(stretch: Stretch, places: _Places, way: Way) -> tuple[Array, Array]:
+    """Returns how far points lie from the middle of a stretch, in metres along the way's direction there; and
+    a share from 0 to 1 that falls to 0 near all parts of roads that are not this stretch."""
+    points, stations = way.points, np.linspace(0.0, stretch.of, len(way.points))
+    at = int(np.abs(stations - stretch.middle).argmin())
+    ahead = points[min(at + 1, len(points) - 1), :2] - points[max(at - 1, 0), :2]
+    ahead = ahead / max(float(np.hypot(*ahead)), 1e-9)
+    along = (places.x - points[at, 0]) * ahead[0] + (places.y - points[at, 1]) * ahead[1]
+    reach = stretch.length / 2 + BESIDE
+    near = np.hypot(*(way.others[:, :2] - points[at, :2]).T) < reach
+    own = points[np.abs(stations - stretch.middle) < reach, :2]
+    other = way.others[~near, :2]
+    if len(other):
+        away = np.asarray(cKDTree(other).query(np.column_stack([places.x.ravel(), places.y.ravel()]))[0])
+        if len(own):
+            to_own = cKDTree(own).query(np.column_stack([places.x.ravel(), places.y.ravel()]))[0]
+            away = np.where(to_own < FREE + 6.0, np.inf, away)
+        return along, smooth(away.reshape(along.shape), 12.0, 60.0)
+    return along, np.ones_like(along)
+
+
+def _beside(stretch: Stretch, side: float, way: Way, first: float, share: float) -> Array:
+    """Returns a line ``(n, 2)`` beside the middle ``share`` of a stretch, ``first`` metres from the way."""
+    stations = np.linspace(0.0, stretch.of, len(way.points))
+    line = way.points[:, :2]
+    ahead = np.gradient(line, axis=0)
+    ahead /= np.maximum(np.hypot(*ahead.T), 1e-9)[:, None]
+    off = line + side * first * np.column_stack([-ahead[:, 1], ahead[:, 0]])
+    kept = np.abs(stations - stretch.middle) <= share * stretch.of / 2
+    return np.asarray(off[kept] if kept.any() else off)
+
+
+def _from(line: Array, places: _Places) -> Array:
+    flat = np.column_stack([places.x.ravel(), places.y.ravel()])
+    return np.asarray(cKDTree(line).query(flat)[0]).reshape(places.x.shape)
+
+
+def _rise(stretch: Stretch, side: float, places: _Places, wave: Array, way: Way) -> Array:
     """Returns by how much a valley, a ridge, a cutting or an embankment raises the land."""
     land, free = stretch.land, places.free
-    along = places.share * stretch.of - stretch.middle
-    half = max(stretch.length / 2, 12.0)
-    window = 1.0 - smooth(np.abs(along), half * 0.6, half + 25.0)
-    if land.kind == "cutting":
-        return np.asarray(7.0 * window * smooth(free, 3.0, 22.0))
-    if land.kind == "embankment":
-        return np.asarray(-6.0 * window * smooth(free, 3.0, 30.0))
-    if land.kind == "bridge":  # over a hollow of its own
-        return np.asarray(-11.0 * (1.0 - smooth(np.abs(along), half * 0.5, half + 12.0)))
-    if land.kind == "tunnel":
-        return np.asarray(18.0 * (1.0 - smooth(np.abs(along), half * 0.6, half + 22.0)))
-    is_bridged = stretch.structure is not None and stretch.structure.kind in ("bridge", "tunnel")
-    if land.kind == "valley" and stretch.is_crossed:
-        if is_bridged:
-            return np.asarray(-16.0 * (1.0 - smooth(np.abs(along), half * 0.4, half + 20.0)))
-        return np.asarray(-9.0 * window * smooth(free, 4.0, 24.0))
+    if stretch.is_crossed:
+        return _crossing_rise(stretch, places, way)
     if land.kind == "valley":
         rise = 90.0 * np.tanh(np.maximum(free - 18.0, 0.0) / 150.0) * (1.0 + 0.35 * wave)
-        return rise if land.side is None else _softened(np.where(places.side == side, -rise / 2, 0.0))
-    if land.kind == "ridge" and stretch.is_crossed:
-        if is_bridged:
-            return np.asarray(22.0 * (1.0 - smooth(np.abs(along), half * 0.6, half + 22.0)))
-        return np.asarray(13.0 * window * smooth(free, 3.0, 26.0))
+        return rise if land.side is None else -rise * (places.side == side) / 2
     if land.kind == "ridge" and land.lie == "along" and land.side is None:
         return np.asarray(-45.0 * np.tanh(np.maximum(free - 12.0, 0.0) / 90.0))
     if land.kind == "ridge":
-        crest = 55.0 * np.exp(-(((places.away - 85.0) / 45.0) ** 2)) * (1.0 + 0.3 * wave)
-        return _softened(np.where(places.side == side, crest * smooth(free, FREE, 60.0), 0.0))
+        away = _from(_beside(stretch, side, way, 85.0, 1.0), places)
+        return np.asarray(
+            55.0 * np.exp(-((away / 45.0) ** 2)) * (1.0 + 0.3 * wave) * smooth(free, FREE, 60.0)
+        )
     return np.zeros_like(free)
+
+
+def _crossing_rise(stretch: Stretch, places: _Places, way: Way) -> Array:
+    kind, free = stretch.land.kind, places.free
+    along, share = _across(stretch, places, way)
+    half, along = max(stretch.length / 2, 12.0), np.abs(along)
+    if stretch.structure is not None and stretch.structure.kind in ("bridge", "tunnel"):
+        height = {"valley": -16.0, "ridge": 22.0}.get(kind, 0.0)
+        inner, outer = (0.4, 20.0) if kind == "valley" else (0.6, 22.0)
+        return np.asarray(height * share * (1.0 - smooth(along, half * inner, half + outer)))
+    if kind == "bridge":  # over a hollow of its own
+        return np.asarray(-11.0 * share * (1.0 - smooth(along, half * 0.5, half + 12.0)))
+    if kind == "tunnel":
+        return np.asarray(18.0 * share * (1.0 - smooth(along, half * 0.6, half + 22.0)))
+    height, full = {
+        "cutting": (7.0, 22.0), "embankment": (-6.0, 30.0), "valley": (-9.0, 24.0), "ridge": (13.0, 26.0),
+    }[kind]  # fmt: skip
+    return np.asarray(
+        height * share * (1.0 - smooth(along, half * 0.6, half + 25.0)) * smooth(free, 3.0, full)
+    )
 
 
 def _with_water(
@@ -401,38 +444,48 @@ def _with_water(
     wave: Array,
 ) -> tuple[Array, Array]:  # fmt: skip
     """Returns heights and water with a lake, a river or a coast beside the way or across it."""
-    land = stretch.land
-    along = places.share * stretch.of - stretch.middle
+    kind = stretch.land.kind
     stations = np.linspace(0.0, stretch.of, len(way.points))
     if stretch.is_crossed:
-        wide = {"river": 8.0, "lake": 40.0, "coast": 40.0}[land.kind]
-        wide = min(wide, max(stretch.length / 2 - 6.0, 5.0))
-        inside = 1.0 - np.abs(along + 14.0 * wave * smooth(places.away, 20.0, 80.0)) / wide
-        if land.kind != "river":
-            inside = np.where(places.away < 200.0, inside, -1.0)
+        wide = min({"river": 8.0, "lake": 40.0, "coast": 40.0}[kind], max(stretch.length / 2 - 6.0, 5.0))
+        along, share = _across(stretch, places, way)
+        out = np.abs(along + 14.0 * wave * smooth(places.away, 20.0, 80.0)) - wide
+        if kind != "river":
+            out = np.maximum(out, places.away - 200.0)
         near = way.points[np.abs(stations - stretch.middle) <= 2 * wide, 2]
         level = np.full(heights.shape, float(near.min(initial=way.points[:, 2].max())) - 6.0)
         reach = 14.0
+        out = np.where(share > 0.5, out, np.maximum(out, 60.0 * (1.0 - 2.0 * share)))
     else:
-        first, wide = {"river": (26.0, 9.0), "lake": (30.0, 80.0), "coast": (32.0, 1e5)}[land.kind]
-        inside = 1.0 - np.abs(places.free - first - wide + 8.0 * wave) / wide
-        inside = np.where((places.side == side) & (places.free > first - 14.0), inside, -1.0)
-        if land.kind == "lake":
-            inside = np.minimum(inside, 1.0 - np.abs(along) / max(60.0, 0.38 * stretch.of))
-        if land.kind == "river":
-            level = base - SHORE - 2.5
-        elif land.kind == "coast":
-            level = np.full(heights.shape, float(way.others[:, 2].min()) - SHORE - 0.8)
-        else:
-            near = way.points[np.abs(stations - stretch.middle) <= max(60.0, 0.4 * stretch.of), 2]
-            level = np.full(heights.shape, float(near.min()) - SHORE - 0.8)
+        first, wide, part = {
+            "river": (26.0, 9.0, 1.0),
+            "lake": (30.0, 70.0, 0.55),
+            "coast": (32.0, 90.0, 1.0),
+        }[kind]
+        axis = _beside(stretch, side, way, first + wide, part)
+        out = _from(axis, places) - wide + 8.0 * wave
+        if kind == "coast":
+            out = np.minimum(out, _behind(way, side, places) + 8.0 * wave)
+        out = np.maximum(out, first - 10.0 - places.free)
+        near = cKDTree(axis).query(way.others[:, :2])[0] < wide + DAMMED
+        lowest = float(way.others[near | (kind == "coast"), 2].min())
+        level = base - SHORE - 2.5 if kind == "river" else np.full(heights.shape, lowest - SHORE - 0.8)
         reach = 40.0
-    out = -inside * min(wide, 80.0)  # m from the edge of the water; negative in it
     shore = level + np.where(out < 0.0, np.maximum(BANK * out, -DEEP), BEACH * out)
     inland = smooth(out, 6.0, reach)
     drawn = np.where(out < reach, shore + (heights - shore) * inland, heights)
-    lowered = np.where((out > 8.0) & (out < 60.0), np.maximum(drawn, level + 0.5), drawn)
+    dam = level + 0.5 * (1.0 - smooth(out, 40.0, 60.0))
+    lowered = np.where((out > 4.0) & (out < 60.0), np.maximum(drawn, dam), drawn)
     return lowered, np.where(out < 3.0 * CELL, level, water)
+
+
+def _behind(way: Way, side: float, places: _Places) -> Array:
+    """Returns the distance in metres from the open sea: all that lies on one side of all roads."""
+    chord = way.points[-1, :2] - way.points[0, :2]
+    chord = chord / max(float(np.hypot(*chord)), 1e-9)
+    normal = side * np.array([-chord[1], chord[0]])
+    edge = float((way.others[:, :2] @ normal).max()) + 70.0
+    return np.asarray(edge - places.x * normal[0] - places.y * normal[1])
 
 
 def smooth(values: Array, low: float, high: float) -> Array:

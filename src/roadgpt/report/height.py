@@ -29,6 +29,7 @@ from roadgpt.report.canvas import (
     note,
 )
 from roadgpt.report.plan_view import stations_of
+from roadgpt.report.relief import draw_land_along
 from roadgpt.road import Road
 from roadgpt.run import Run
 
@@ -226,6 +227,8 @@ def height_profile(run: Run, scale: Scale = "equal") -> Figure:
     header.write(figure)
     shade_junctions(axes, run.road)
     draw_heights(axes, s, z, label)
+    if run.world.has_ground and scale != "thesis":
+        draw_land_along(axes, run.world.lay(run.road), run.world, s, z)
     low, high = axes.get_ylim()
     for place in places:
         at = float(np.interp(place.s, s, z))
