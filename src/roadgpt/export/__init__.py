@@ -131,6 +131,7 @@ def doubts(road: Road, formats: Sequence[str], world: World, poses: Poses | None
         "heights": bool(np.any(road.sample().grade)),
         "superelevation": profile.superelevation_angle is not None,
         "changes of width": any(isinstance(width, CubicProfile) for width in widths),
+        "the land around": world.has_ground,
         "others on the road": poses is not None and poses.others is not None,
     }
     for part in map(exporter_of, formats):

@@ -157,21 +157,23 @@ def _square(table: Array, wide: float, high: float, path: Path) -> Relief:
     return _relief(across[j] * (1 - v) + across[j + 1] * v, cell, path)
 
 
-def write_ground(heights: Array, cell: float, path: Path) -> None:
+def write_ground(heights: Array, cell: float, path: Path, corner: tuple[float, float] = (0.0, 0.0)) -> None:
     """Writes heights ``(rows, columns)``, the first row in the south, as the ending of the file asks: .png
-    with its world file and .json, .asc, or .npy with its .json. Raises UsageError for other endings."""
+    with its world file and .json, .asc, or .npy with its .json. ``corner`` is the place of the first height
+    of the first row in metres. Raises UsageError for other endings."""
     lowest = float(heights.min())
     if path.suffix == ".png":
         step = max(float(np.ptp(heights)) / LEVELS, 0.001)
         levels = np.rint((heights[::-1] - lowest) / step).astype(np.uint16)
         Image.fromarray(levels).save(path)
-        north = (len(heights) - 1) * cell
-        lines = (f"{value!r}\n" for value in (cell, 0.0, 0.0, -cell, 0.0, north))
+        west, north = corner[0], corner[1] + (len(heights) - 1) * cell
+        lines = (f"{value!r}\n" for value in (cell, 0.0, 0.0, -cell, west, north))
         path.with_suffix(".pgw").write_text("".join(lines), encoding="ascii")
         _say(path, cell=cell, lowest=lowest, step=step)
     elif path.suffix == ".asc":
         rows, columns = heights.shape
-        head = f"ncols {columns}\nnrows {rows}\nxllcenter 0\nyllcenter 0\ncellsize {cell!r}\n"
+        head = f"ncols {columns}\nnrows {rows}\nxllcenter {corner[0]!r}\nyllcenter {corner[1]!r}\n"
+        head += f"cellsize {cell!r}\n"
         body = io.StringIO()
         np.savetxt(body, heights[::-1], fmt="%.3f")
         path.write_text(head + body.getvalue(), encoding="ascii")

@@ -44,6 +44,7 @@ class BeamNG:
 
     name = "beamng"
     suffix = "-beamng"
+    lacks = ("the land around",)
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the level folder. ``poses`` is ignored, because a level cannot hold a drive."""

@@ -143,7 +143,7 @@ class CommonRoad:
     suffix = ".cr.xml"
     holds_junctions = True
     needs_route = True
-    lacks = ("heights", "superelevation")
+    lacks = ("heights", "superelevation", "the land around")
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the scenario.

@@ -29,6 +29,7 @@ class Crg:
 
     name = "crg"
     suffix = ".crg"
+    lacks = ("the land around",)
 
     def doubts(self, road: Road, world: World) -> tuple[str, ...]:
         """Says where the surface ends before the shoulders do."""

@@ -130,12 +130,19 @@ def meshes(road: Road, world: World, poses: Poses | None = None) -> list[Triangl
         out += _painted(network)
     if road.has_way:
         out.append(_path(road, stations_of(only) if only else road.sample().s, world, poses))
-    ground = ground_around(road, world)
-    if ground.pavement.rims:  # without shoulders, the road floats
-        out.append(_land("ground", "grass", mesh_of(ground, to_horizon=False)))
-        out += [_solid(f"{span.kind} {n}", each) for n, (span, each) in _structures(network, ground)]
-        if len((water := water_of(ground)).triangles):
-            out.append(_land("water", "water", water))
+    return out + land_meshes(road, world)
+
+
+def land_meshes(road: Road, world: World) -> list[TriangleMesh]:
+    """Returns the meshes of the ground around a road, its water, and bridges and tunnels; none if the road
+    floats."""
+    network, ground = network_of(road, world), ground_around(road, world)
+    if not ground.pavement.rims:
+        return []
+    out = [_land("ground", "grass", mesh_of(ground, to_horizon=False))]
+    out += [_solid(f"{span.kind} {n}", each) for n, (span, each) in _structures(network, ground)]
+    if len((water := water_of(ground)).triangles):
+        out.append(_land("water", "water", water))
     return out
 
 

@@ -46,6 +46,7 @@ class Lanelet2:
 
     name = "lanelet2"
     suffix = ".osm"
+    lacks = ("the land around",)
     holds_junctions = True
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:

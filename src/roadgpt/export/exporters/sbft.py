@@ -20,6 +20,7 @@ class Sbft:
 
     name = "sbft"
     suffix = ".sbft.json"
+    lacks = ("the land around",)
 
     def doubts(self, road: Road, world: World) -> tuple[str, ...]:
         """Says so if the control points are too few for the road."""

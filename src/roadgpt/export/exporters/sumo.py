@@ -40,7 +40,7 @@ class Sumo:
 
     name = "sumo"
     suffix = ".nod.xml"
-    lacks = ("superelevation", "changes of width")
+    lacks = ("superelevation", "changes of width", "the land around")
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes NAME.nod.xml, .edg.xml, .netccfg, .rou.xml and .sumocfg; also .net.xml if netconvert is

@@ -9,6 +9,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from roadgpt.export.ego import Poses
+from roadgpt.export.exporters.gltf import land_meshes, to_bytes
 from roadgpt.export.exporters.opendrive.boundaries import boundary
 from roadgpt.export.exporters.opendrive.lanes import LaneLinks, RoadParts, lateral_profile
 from roadgpt.export.exporters.opendrive.reference_line import Start, bounds_of, geometries, reaches, starts_of
@@ -17,11 +18,12 @@ from roadgpt.export.georeference import PROJECTION
 from roadgpt.export.markup import Value, XmlElement
 from roadgpt.geometry import PieceCurve
 from roadgpt.network import Junction, Network, NetworkRoad, RoadEnd, legs_of, network_of, only_road
+from roadgpt.network.landscape import ground_around
 from roadgpt.road import Road, World
 
 __all__ = ["OpenDrive", "document"]
 
-ROUTE = ".route.json"
+ROUTE, GROUND = ".route.json", ".ground.glb"
 """Suffix of the file that names the roads and lanes of a route: ``{"route": [[road, lane], ...]}``."""
 REVISION = 8  # ASAM OpenDRIVE 1.8
 WITH_BOUNDARIES = 8  # first minor revision in which a junction has a boundary
@@ -37,10 +39,13 @@ class OpenDrive:
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the file, and beside it, with the suffix ``.route.json``, the roads and lanes to drive, in
-        driving order. For a map without a route, this is an empty list.
+        driving order. For a map without a route, this is an empty list. Land, which the format does not hold,
+        is written beside it as a mesh, with the suffix ``.ground.glb``.
 
         ``poses`` is ignored, because OpenDRIVE cannot hold a drive."""
         path.write_bytes(document(road, world, self.revision).to_text().encode())
+        if world.has_ground:
+            path.with_suffix(GROUND).write_bytes(to_bytes(land_meshes(road, world), road.at(0.0)))
         path.with_suffix(ROUTE).write_text(json.dumps({"route": legs_of(road, world)}) + "\n")
 
 
@@ -50,7 +55,8 @@ def document(road: Road, world: World, revision: int = REVISION) -> XmlElement:
 
     If a number of the road is not finite, ``to_text`` of the document raises ExportError."""
     network, only = network_of(road, world), only_road(road, world)
-    signals, parts = Signals(network), RoadParts(world)
+    spans = ground_around(road, world).pavement.spans if world.has_ground else ()
+    signals, parts = Signals(network, spans), RoadParts(world)
     if only is None:
         plans = [each.road.plan for each in network.roads]
         starts: list[list[Start] | None] = [

@@ -8,12 +8,13 @@ curved, and has an outline as well."""
 
 import math
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
 from roadgpt.export.markup import Value, XmlElement
 from roadgpt.geometry.curve import Array
+from roadgpt.ground.ground import Span
 from roadgpt.network import Arm, Junction, Network, NetworkRoad, RoadEnd
 from roadgpt.network.markings import (
     CROSSWALK,
@@ -47,7 +48,7 @@ class Signals:
     The ids of signs and lights follow those of roads and junctions. A line has the id of its sign or light.
     After all of these come the ids of the crosswalks, then those of the arrows."""
 
-    def __init__(self, network: Network) -> None:
+    def __init__(self, network: Network, spans: Sequence[Span] = ()) -> None:
         # the elements on each road, by the id of the road
         self._signals = defaultdict[int, list[XmlElement]](list)
         self._objects = defaultdict[int, list[XmlElement]](list)
@@ -70,8 +71,17 @@ class Signals:
         crossed = [arm.end for _, arm in arms if arm.crosswalk]
         for number, end in enumerate(crossed, first + len(controlled)):
             self._objects[end.road].append(crosswalk_object(network.road(end.road), end, number))
-        for number, arrow in enumerate(arrows(network), first + len(controlled) + len(crossed)):
+        painted = arrows(network)
+        for number, arrow in enumerate(painted, first + len(controlled) + len(crossed)):
             self._objects[arrow.end.road].append(arrow_object(arrow, number))
+        first += len(controlled) + len(crossed) + len(painted)
+        # the standard has tunnels before bridges, and both after all objects
+        for number, span in enumerate(sorted(spans, key=lambda each: each.kind != "tunnel"), first):
+            where: dict[str, Value] = {"s": span.start, "length": span.end - span.start, "id": str(number)}
+            about: dict[str, Value] = {"name": f"{span.kind} {number}", "type": "concrete"}
+            if span.kind == "tunnel":
+                about |= {"type": "standard", "lighting": 1, "daylight": 0}
+            self._objects[span.road].append(XmlElement(span.kind, {**where, **about}))
 
     def on_road(self, road: int) -> Iterator[XmlElement]:
         """Yields the elements ``objects`` and ``signals`` of a road; an empty element is left out."""
