@@ -15,6 +15,7 @@ from roadgpt.drive import Command, Drive, View, simulate
 from roadgpt.drive.company import in_sight, look_around
 from roadgpt.drive.drive_monitor import DriveMonitor
 from roadgpt.errors import UsageError
+from roadgpt.ground.sight import OPEN
 from roadgpt.road import Limits, Road, World
 from roadgpt.traffic import SIZES, Actor, Tracks
 from roadgpt.traffic.actor import corners
@@ -287,7 +288,7 @@ def in_view(eye: np.ndarray, boxes: np.ndarray, road: np.ndarray, reach: float =
     seen = np.ascontiguousarray(boxes[order, :4])
     # in one piece, as in drives: for others it would be compiled again
     states, sizes = np.ascontiguousarray(boxes[:, :5]), np.ascontiguousarray(boxes[:, 5:])
-    kept = in_sight(states, sizes, eye, road, order, seen, len(boxes), reach)
+    kept = in_sight(states, sizes, eye, road, OPEN, order, seen, len(boxes), reach)
     np.testing.assert_array_equal(seen[:kept, :2], boxes[order[:kept], :2])
     far = np.hypot(*(boxes[order[:kept], :2] - eye[:2]).T)
     assert (np.diff(far) >= 0).all()

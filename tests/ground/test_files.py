@@ -214,9 +214,8 @@ def test_what_is_no_land_is_refused(
     assert said in refused(path)
 
 
-@pytest.mark.parametrize("place", [Affine(10, 0, 0, 0, 0, 10), Affine(0, 0, 0, 0, -10, 0)])
-def test_a_geotiff_without_an_area_is_refused(place: Affine, tmp_path: Path) -> None:
-    refused(tiff(tmp_path / "land.tif", np.zeros((4, 5), np.float32), place))
+def test_a_geotiff_without_an_area_is_refused(tmp_path: Path) -> None:
+    refused(tiff(tmp_path / "land.tif", np.zeros((4, 5), np.float32), Affine(10, 0, 0, 0, 0, 10)))
 
 
 def test_a_truncated_geotiff_a_missing_file_and_an_unknown_ending_are_refused(tmp_path: Path) -> None:

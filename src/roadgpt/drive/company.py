@@ -13,6 +13,8 @@ from roadgpt.brief.visibility import visual_range
 from roadgpt.compiled import bound, compiled, inlined
 from roadgpt.drive.drive import COLUMNS, Box, FloatArray
 from roadgpt.drive.view import LightAhead, Other, Others
+from roadgpt.ground.sight import Horizon, is_behind_land
+from roadgpt.network.landscape import horizon_around
 from roadgpt.network.lanes import HEADROOM
 from roadgpt.traffic import STEP, TestedCar, Traffic
 from roadgpt.traffic.actor import bodies
@@ -83,15 +85,15 @@ def _hides(
 
 @compiled
 def in_sight(
-    states: FloatArray, sizes: FloatArray, eye: FloatArray, road: FloatArray, order: "NDArray[np.int64]",
-    seen: FloatArray, count: int, reach: float,
+    states: FloatArray, sizes: FloatArray, eye: FloatArray, road: FloatArray, horizon: Horizon,
+    order: "NDArray[np.int64]", seen: FloatArray, count: int, reach: float,
 ) -> int:  # fmt: skip
     """Keeps in ``order`` and ``seen``, as ``look_around`` wrote them, those whom the driver's eye at x, y, z
     sees within ``reach`` metres, and returns how many they are.
 
     Somebody is seen if a line from the eye leads to the top of its box, at its middle or a corner, past all
-    other boxes and, for the middle, above the points (n, 3) of the road. ``sizes`` are lengths, widths and
-    heights."""
+    other boxes and, for the middle, above the points (n, 3) of the road and the land. ``sizes`` are lengths,
+    widths and heights."""
     near, before, kept = order[:count].copy(), np.empty(count, np.int64), 0
     ways = np.empty((count, 4))  # distance, bearing and radius of a box, and half of the angle that it covers
     for place in range(count):
@@ -109,7 +111,7 @@ def in_sight(
             u = (x * ahead + y * aside) / max(far * far, 1e-9)
             if 0.0 < u < 1.0 and abs(y * ahead - x * aside) < BESIDE * far:
                 is_hidden = is_hidden or road[n, 2] > eye[2] + u * (top - eye[2])
-        if is_hidden:
+        if is_hidden or is_behind_land(horizon, eye[0], eye[1], eye[2], states[k, 0], states[k, 1], top):
             continue
         some = 0
         for n in range(count):
@@ -140,7 +142,8 @@ def in_sight(
 @compiled
 def look(
     before: FloatArray, after: FloatArray, share: float, looks: FloatArray, row: FloatArray,
-    box: FloatArray, road: FloatArray, states: FloatArray, order: "NDArray[np.int64]", seen: FloatArray,
+    box: FloatArray, road: FloatArray, horizon: Horizon, states: FloatArray,
+    order: "NDArray[np.int64]", seen: FloatArray,
 ) -> tuple[int, bool]:  # fmt: skip
     """Writes into ``states`` where the actors are, when a ``share`` of the time between two samples has
     passed, and into ``order`` and ``seen`` those whom the driver sees; returns how many they are and whether
@@ -159,7 +162,7 @@ def look(
     here, far = int(row[S] / SPACING), int(SEEN / SPACING)
     eye = np.array([x, y, row[Z] - height + EYE])
     near = road[max(here - far, 0) : here + far]
-    return in_sight(states, looks, eye, near, order, seen, count, SEEN), touches
+    return in_sight(states, looks, eye, near, horizon, order, seen, count, SEEN), touches
 
 
 class Company:
@@ -180,10 +183,12 @@ class Company:
         line = road.at(np.arange(0.0, road.length, SPACING))
         is_hilly = np.abs(np.diff(line[:, 2], 2)).max(initial=0.0) > FLAT
         self._heights = np.ascontiguousarray(line if is_hilly else line[:0])
+        self._horizon = horizon_around(road, world)
         self._outline = np.array([box.length, box.width, box.ahead, box.height])
         self._looks = none = np.empty((0, 5))
         self._found = none, np.empty(0, np.int64), np.empty((0, 7))
-        given = (none, none, 0.0, none, np.empty(0), self._outline, self._heights, *self._found)
+        self._past = self._outline, self._heights, self._horizon
+        given = (none, none, 0.0, none, np.empty(0), *self._past, *self._found)
         self._look = bound(look, given)
 
     def seen(self, row: FloatArray, time: float) -> Others:
@@ -192,7 +197,7 @@ class Company:
         COLUMNS."""
         if time >= self._samples * STEP - 1e-6:
             self._move_on(row)
-        given = (*self._traffic.around(time), self._looks, row, self._outline, self._heights, *self._found)
+        given = (*self._traffic.around(time), self._looks, row, *self._past, *self._found)
         count, touches = self._look(*given)
         if touches:
             self._monitor.touch(time)

@@ -79,6 +79,8 @@ class Pavement:
     covers: Array = field(default_factory=lambda: np.empty((0, 3, 3)))
     """The corners of triangles ``(k, 3, 3)`` over tunnels: the land is not lower there."""
     spans: tuple[Span, ...] = ()
+    decks: Array = field(default_factory=lambda: np.empty((0, 3, 3)))
+    """The corners of the surface of the road on the spans, ``(k, 3, 3)``."""
 
     @classmethod
     def of(cls, triangles: Array, outlines: Sequence[Array], **more: Any) -> "Pavement":

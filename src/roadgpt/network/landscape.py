@@ -9,9 +9,11 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from roadgpt.errors import UsageError
+from roadgpt.geometry.curve import Array
 from roadgpt.ground.given import GivenGround
 from roadgpt.ground.ground import SLOPE, Ground, Pavement, Span, slope_for
 from roadgpt.ground.relief import Kind, Relief, Stretch, Way, level_land, made, stretches
+from roadgpt.ground.sight import OPEN, Horizon, horizon_of, sight_distances
 from roadgpt.network.network import NetworkRoad
 from roadgpt.network.road_or_route import is_route, network_of
 from roadgpt.network.surface import pavement_of
@@ -73,6 +75,22 @@ def _stretches(road: Road, world: World) -> list[Stretch]:
         taken.append((middle - long / 2, middle + long / 2))
         found.append(replace(each, start=middle - long / 2, end=middle + long / 2))
     return found
+
+
+@lru_cache(maxsize=4)
+def horizon_around(road: Road, world: World) -> Horizon:
+    """Returns what may hide others on a road: nothing, if the World has no land."""
+    return horizon_of(ground_around(road, world)) if world.has_ground else OPEN
+
+
+def sight_along(road: Road, world: World, step: float = 5.0) -> tuple[Array, Array]:
+    """Returns stations about every ``step`` metres, and how far in metres the driver of the tested car sees
+    an object on the road from each of them (see ``ground.sight``): infinite where it is seen to the end."""
+    road = world.lay(road)
+    s = np.linspace(0.0, road.length, max(2, round(road.length / step) + 1))
+    points = road.at(s, world.profile_of(road).middle(s))
+    horizon = horizon_of(ground_around(road, world))
+    return s, sight_distances(horizon, np.ascontiguousarray(points), road.length / (len(s) - 1))
 
 
 class Crossing(NamedTuple):

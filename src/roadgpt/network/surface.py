@@ -93,7 +93,7 @@ def pavement_of(network: Network, spans: Sequence[Span] = ()) -> Pavement:
     from shapely.geometry.polygon import orient
 
     parts = NetworkSurface.of(network)
-    inner, outer, shapes, covers, portals = [], [], [], [], list[Portal]()
+    inner, outer, shapes, covers, decks, portals = [], [], [], [], [], list[Portal]()
     for member in parts.roads:
         own = sorted((each for each in spans if each.road == member.id), key=lambda each: each.start)
         stops = [0.0, *(at for each in own for at in (each.start, each.end)), member.road.length]
@@ -103,7 +103,9 @@ def pavement_of(network: Network, spans: Sequence[Span] = ()) -> Pavement:
                 inner.append(_quads(right, left))
                 outer += [_quads(left, left_rim), _quads(right_rim, right)]
                 shapes.append(shapely.Polygon(np.concatenate([right_rim, left_rim[::-1]])[:, :2]))
-            elif own[number // 2].kind == "tunnel":
+                continue
+            decks.append(_quads(right_rim, left_rim))
+            if own[number // 2].kind == "tunnel":
                 covers.append(_quads(right_rim, left_rim) + [0.0, 0.0, COVER])
                 for at, way in ((0, 1), (-1, -1)):
                     ahead = way * _unit(left_rim[at] - right_rim[at])[::-1] * [1.0, -1.0]
@@ -125,8 +127,8 @@ def pavement_of(network: Network, spans: Sequence[Span] = ()) -> Pavement:
         for part in polygons_in(whole)
         for ring in (orient(part).exterior, *orient(part).interiors)
     ]
-    cover = np.concatenate(covers) if covers else np.empty((0, 3, 3))
-    more = {"portals": tuple(portals), "covers": cover, "spans": tuple(spans)}
+    cover, deck = (np.concatenate(parts) if parts else np.empty((0, 3, 3)) for parts in (covers, decks))
+    more = {"portals": tuple(portals), "covers": cover, "spans": tuple(spans), "decks": deck}
     return Pavement.of(np.concatenate([*inner, *outer]), rings, **more)
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from roadgpt.brief.junctions import NAMES
 from roadgpt.geometry.curve import Array
+from roadgpt.network.landscape import sight_along
 from roadgpt.report.birds_eye import STEP, Scale, name_places, places_of
 from roadgpt.report.canvas import (
     BLUE,
@@ -58,6 +59,7 @@ RADII = (15, 20, 30, 60, 100, 200, 400, 1000, 2000, 5000)  # m, named on the rig
 SEEN, SMALL = 0.005, 0.25  # of a limit: values between these are drawn larger, and the limit is not shown
 SHADE = "#e4e8ee"
 NAME_SIZE, NAME_LINE = 8.5, 0.16  # points; inches from one line of names to the next
+REACTION, BRAKING = 2.5, 3.4  # s; m/s^2
 LINES = 3  # of names, where they stand close together
 
 
@@ -65,6 +67,7 @@ def strip(run: Run) -> Figure:
     """Returns a figure with panels for curvature, for grade and, if there is a drive, for speed."""
     assert run.road is not None
     panels = [_curvature, _grade] + ([_speed] if run.drive is not None else [])
+    panels += [_sight] if run.world.has_ground and run.road.has_way else []
     header = Header.of(run, WIDTH)
     high = header.height + BOTTOM + len(panels) * PANEL + (len(panels) - 1) * GAP
     figure = new_figure(WIDTH, high)
@@ -148,6 +151,25 @@ def _speed(axes: Axes, run: Run, s: Array) -> None:
     axes.axhline(limit, color=VERMILLION, lw=1.1, ls=(0, (1, 1.5)))
     _name_limit(axes, limit, f"limit: {limit:.0f} km/h")
     axes.set_ylabel("speed, km/h")
+
+
+def _sight(axes: Axes, run: Run, s: Array) -> None:
+    """How far the driver sees along the road, and how far a car goes until it stands (AASHTO Green Book,
+    3.2.2: after 2.5 s, at 3.4 m/s^2), from the speed of the drive, or else the speed limit."""
+    assert run.road is not None
+    stations, sight = sight_along(run.road, run.world)
+    speed = np.full_like(stations, run.world.limits.speed_limit)
+    if run.drive is not None:
+        order = np.argsort(run.drive["s"], kind="stable")
+        speed = np.interp(stations, run.drive["s"][order], run.drive["speed"][order])
+    need = speed * REACTION + speed**2 / (2 * BRAKING)
+    top = 1.3 * max(float(need.max()), float(np.max(sight, where=np.isfinite(sight), initial=60.0)))
+    axes.set_ylim(0, top)
+    axes.plot(stations, np.minimum(sight, top), color=INK, lw=1.4)
+    axes.plot(stations, need, color=VERMILLION, lw=1.1, ls=(0, (1, 1.5)))
+    axes.fill_between(stations, sight, need, where=sight < need, color=ORANGE, alpha=0.45, lw=0)
+    axes.set_ylabel("sight, m")
+    note(axes, (0.995, 0.95), "dotted: stopping distance; line at the top: seen to the end")
 
 
 def _name_sides(axes: Axes, above: str, below: str) -> None:

@@ -22,6 +22,7 @@ from roadgpt.brief.scene import VEHICLES
 from roadgpt.brief.visibility import visual_range, weather_drawn
 from roadgpt.drive.company import EYE, SPACING, in_sight
 from roadgpt.network import legs_of, network_of
+from roadgpt.network.landscape import horizon_around
 from roadgpt.network.lanes import lanes_of
 from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y
 from roadgpt.traffic.following import AFTER_CONTACT
@@ -146,6 +147,7 @@ class _Encounter:
         size = np.broadcast_to([length / 2, width / 2], (len(other), 2))
         boxes = way.boxes(other[:, X], other[:, Y], other[:, HEADING], size, other[:, SPEED])
         time, self.way = STEP * np.arange(begin, hit + 1), way
+        self._horizon = horizon_around(road, world)
         scene = weather_drawn(world.scene, drive.seed)
         reach = visual_range(scene, actor.kind)
         seen = np.array([self._is_seen(number, each, reach) for each in time])
@@ -214,9 +216,8 @@ class _Encounter:
         sizes, count = np.array([each.size for each in actors]), len(order)
         eye = self.way.at(np.array(self._eye(time))) + [0.0, 0.0, EYE]
         ground = np.column_stack([self.way.middle, self.way.z])[:: round(SPACING / ALONG)].copy()
-        found = in_sight(
-            states, sizes, eye, ground, order, np.empty((count, 4)), count, reach + sizes[number, 0] / 2
-        )
+        far, seen = reach + sizes[number, 0] / 2, np.empty((count, 4))
+        found = in_sight(states, sizes, eye, ground, self._horizon, order, seen, count, far)
         return number in order[:found]
 
     def seen(self, at: int, place: float, speed: float, gained: float) -> Moment:
