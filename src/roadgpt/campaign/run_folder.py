@@ -63,8 +63,8 @@ class RunWriter:
     def written(self, run: Run, task: Task, cell: str) -> FinishedTest:
         """Writes the folder of a Run, and returns its test as a FinishedTest."""
         with writing(self.folders[cell]):
-            write_run_folder(run, self.folders[cell], self.draw)
-            keep_ground(run.world, self.folders[cell])
+            own = write_run_folder(run, self.folders[cell], self.draw)
+            keep_ground(run.world, self.folders[cell], own)
         kept = None if self.meter is None else run
         return FinishedTest.of(run, task, test_file=test_text(run), entries=_entries(run), run=kept)
 

@@ -64,7 +64,8 @@ def path_guard(value: str, place: str) -> str:
 
 def ground_guard(value: str, place: str) -> str:
     """Refuses a file of heights where ``path_guard`` does."""
-    return path_guard(value, place) if Path(value.partition("@")[0]).suffix else ""
+    is_file = Path(value).suffix or Path(value.rpartition("@")[0]).suffix
+    return path_guard(value, place) if is_file else ""
 
 
 def _plugin_guard(kind: str, value: str, place: str) -> str:

@@ -37,8 +37,8 @@ def placed(design: Design, brief: Brief, world: World, relief: Relief) -> Design
     s = np.linspace(0.0, road.length, max(2, round(road.length / STEP) + 1))
     best: tuple[float, str] = (np.inf, "there is no room for it")
     line = road.at(s)
-    for is_bound in (False, True):
-        for x, y, theta in _places(line, relief, world.limits.max_grade, is_bound):
+    for is_alike, is_bound in ((False, False), (True, False), (True, True)):
+        for x, y, theta in _places(line, relief, world.limits.max_grade, is_alike):
             land = relief.at(*_moved(line[:, :2], x, y, theta).T)
             found = _grades(segments, s, land, world.limits.max_grade, is_bound)
             if found is None:
@@ -53,7 +53,7 @@ def placed(design: Design, brief: Brief, world: World, relief: Relief) -> Design
                 "starting_point": (round(x, 2), round(y, 2), round(z, 2)),
                 "theta": round(float(np.degrees(theta)), 2),
                 "segments": tuple(
-                    each.model_copy(update={"incline": round(100 * grade, 2)})
+                    each.model_copy(update={"incline": round(100 * float(grade), 2) + 0.0})
                     for each, grade in zip(segments, grades, strict=True)
                 ),
             })  # fmt: skip
@@ -79,9 +79,9 @@ def _moved(points: Array, x: float, y: float, theta: float) -> Array:
     return np.asarray(points @ np.array([[c, n], [-n, c]]) + [x, y])
 
 
-def _places(line: Array, relief: Relief, steepest: float, is_bound: bool) -> list[tuple[float, float, float]]:
+def _places(line: Array, relief: Relief, steepest: float, is_alike: bool) -> list[tuple[float, float, float]]:
     """Returns where a road with a centre line ``(n, 3)`` may begin, and its heading there, the best places
-    first: where the land is even along the road, or, if ``is_bound``, rises as the road does."""
+    first: where the land is even along the road, or, if ``is_alike``, rises as the road does."""
     size, heights = np.array(relief.size), line[:, 2] - line[:, 2].mean()
     found: list[tuple[float, tuple[float, float, float]]] = []
     for theta in np.arange(TURNS) * 2 * np.pi / TURNS:
@@ -92,7 +92,7 @@ def _places(line: Array, relief: Relief, steepest: float, is_bound: bool) -> lis
         x, y = (each.ravel() for each in np.meshgrid(*(np.linspace(low[i], high[i], PLACES) for i in (0, 1))))
         along = turned[None] + np.column_stack([x, y])[:, None]
         land = relief.at(*along.reshape(-1, 2).T).reshape(along.shape[:2])
-        if is_bound:
+        if is_alike:
             score = np.abs(land - land.mean(axis=1, keepdims=True) - heights).mean(axis=1)
         else:
             level = uniform_filter1d(land, max(3, int(WINDOW / STEP)), axis=1, mode="nearest")

@@ -8,8 +8,11 @@ import hashlib
 import io
 import json
 import math
+import zlib
 from pathlib import Path
+from tokenize import TokenError
 from typing import Any
+from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +25,11 @@ from roadgpt.ground.relief import Relief
 
 MOST = 16_000_000  # heights in a file
 LARGEST_CELL, HIGHEST = 1000.0, 20_000.0  # m
+UNREADABLE = (
+    OSError, EOFError, ValueError, LookupError, TypeError, ArithmeticError, MemoryError, RecursionError,
+    SyntaxError, BadZipFile, zlib.error, TokenError, Image.DecompressionBombError,
+)  # fmt: skip
+"""What the libraries raise that read files, if those are broken."""
 SUFFIXES = (".png", ".asc", ".npy", ".tif", ".tiff")
 DEGREE = 111_320.0  # m of a degree of latitude, and of longitude at the equator
 LEVELS = 65_535  # of 16 bits
@@ -48,7 +56,7 @@ def attached(name: str, folder: Path) -> GivenGround:
     try:
         with np.load(path, allow_pickle=False) as data:
             made = named(name.rpartition("@")[0], _relief(data["heights"], float(data["cell"]), path))
-    except (OSError, ValueError, KeyError) as error:
+    except UNREADABLE as error:
         raise UsageError(f"the land '{name}' is missing: {path} cannot be read; copy it there") from error
     if made != name:
         raise UsageError(f"{path} holds other land than '{name}'; copy the right one there")
@@ -62,13 +70,15 @@ def read_ground(path: Path) -> GivenGround:
         raise UsageError(f"{path} is no land that can be read; give one of {', '.join(SUFFIXES)}")
     try:
         return named(str(path), reader(path))
-    except (OSError, ValueError, KeyError, MemoryError, Image.DecompressionBombError) as error:
+    except UNREADABLE as error:
         why = str(error).splitlines()[0][:160] if str(error) else type(error).__name__
         raise UsageError(f"the land in {path} cannot be read: {why}") from error
 
 
 def _relief(heights: NDArray[Any], cell: float, path: Path) -> Relief:
     """Returns land with its first row in the south."""
+    if np.asarray(heights).dtype.kind not in "iuf":
+        raise ValueError("it holds no numbers that can be heights")
     table = np.array(heights, np.float64)
     if table.ndim != 2 or min(table.shape) < 2 or table.size > MOST:
         raise UsageError(f"{path} has no table of 2 x 2 to {MOST:,} heights")
@@ -95,6 +105,8 @@ def _png(path: Path) -> Relief:
     with Image.open(path) as image:
         if image.mode not in ("I;16", "I;16B", "I", "L"):
             raise UsageError(f"{path} is a picture in colours; give a grey one with 16 bits")
+        if image.width * image.height > MOST:
+            raise UsageError(f"{path} has no table of 2 x 2 to {MOST:,} heights")
         levels = np.asarray(image, np.float64)[::-1]
     cell, lowest, step = _said_beside(path, "cell", "lowest", "step")
     return _relief(lowest + step * levels, cell, path)
@@ -119,7 +131,7 @@ def _asc(path: Path) -> Relief:
         rows, columns = int(header["nrows"]), int(header["ncols"])
         if not 4 <= rows * columns <= MOST:
             raise UsageError(f"{path} has no table of 2 x 2 to {MOST:,} heights")
-        table = np.loadtxt(lines, ndmin=1).reshape(rows, columns)[::-1]
+        table = np.array(lines.read().split(), np.float64).reshape(rows, columns)[::-1]
     table = np.where(table == header.get("nodata_value", math.nan), math.nan, table)
     return _relief(table, header["cellsize"], path)
 
@@ -133,7 +145,13 @@ def _tiff(path: Path) -> Relief:
         with rasterio.open(path) as data:
             if data.width * data.height > MOST:
                 raise UsageError(f"{path} has no table of 2 x 2 to {MOST:,} heights")
-            table = data.read(1, masked=True).filled(math.nan).astype(np.float64)[::-1]
+            if data.transform.b or data.transform.d:
+                raise UsageError(f"{path} is turned against the map; give land whose rows lie west to east")
+            if data.crs and data.crs.is_projected and not math.isclose(data.crs.linear_units_factor[1], 1.0):
+                raise UsageError(f"{path} is in {data.crs.linear_units}, not in metres; convert it first")
+            table = data.read(1, masked=True).astype(np.float64).filled(math.nan)
+            if not (data.crs and data.transform.e > 0):  # the first row lies in the north
+                table = table[::-1]
             wide, high = abs(data.transform.a), abs(data.transform.e)
             is_geographic = bool(data.crs and data.crs.is_geographic)
             middle = (data.bounds.bottom + data.bounds.top) / 2
@@ -149,6 +167,8 @@ def _square(table: Array, wide: float, high: float, path: Path) -> Relief:
     if math.isclose(wide, high, rel_tol=1e-6):
         return _relief(table, wide, path)
     cell, (rows, columns) = min(wide, high), table.shape
+    if (columns * wide / cell) * (rows * high / cell) > MOST:
+        raise UsageError(f"{path} has cells of {wide:g} m x {high:g} m; give land with square cells")
     x = np.arange(0.0, (columns - 1) * wide + 1e-9, cell) / wide
     y = np.arange(0.0, (rows - 1) * high + 1e-9, cell) / high
     i, j = np.minimum(x.astype(int), columns - 2), np.minimum(y.astype(int), rows - 2)
@@ -162,7 +182,10 @@ def write_ground(heights: Array, cell: float, path: Path, corner: tuple[float, f
     with its world file and .json, .asc, or .npy with its .json. ``corner`` is the place of the first height
     of the first row in metres. Raises UsageError for other endings."""
     lowest = float(heights.min())
-    if path.suffix == ".png":
+    if heights.size > MOST:
+        raise UsageError(f"{heights.size:,} heights are more than {MOST:,}; make the cells larger")
+    suffix = path.suffix.lower()
+    if suffix == ".png":
         step = max(float(np.ptp(heights)) / LEVELS, 0.001)
         levels = np.rint((heights[::-1] - lowest) / step).astype(np.uint16)
         Image.fromarray(levels).save(path)
@@ -170,14 +193,14 @@ def write_ground(heights: Array, cell: float, path: Path, corner: tuple[float, f
         lines = (f"{value!r}\n" for value in (cell, 0.0, 0.0, -cell, west, north))
         path.with_suffix(".pgw").write_text("".join(lines), encoding="ascii")
         _say(path, cell=cell, lowest=lowest, step=step)
-    elif path.suffix == ".asc":
+    elif suffix == ".asc":
         rows, columns = heights.shape
         head = f"ncols {columns}\nnrows {rows}\nxllcenter {corner[0]!r}\nyllcenter {corner[1]!r}\n"
         head += f"cellsize {cell!r}\n"
         body = io.StringIO()
         np.savetxt(body, heights[::-1], fmt="%.3f")
         path.write_text(head + body.getvalue(), encoding="ascii")
-    elif path.suffix == ".npy":
+    elif suffix == ".npy":
         np.save(path, heights.astype(np.float32))
         _say(path, cell=cell)
     else:

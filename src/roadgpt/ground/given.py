@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 if TYPE_CHECKING:
     from roadgpt.ground.relief import Relief
 
-NAME = re.compile(r"(.{1,300})@([0-9a-f]{12})")
+NAME = re.compile(r"(.{1,4096})@([0-9a-f]{12})", re.DOTALL)
 """The file as it was given, and a digest of its heights."""
 BESIDE = "ground.npz"
 """The file with the heights of given land in the folder of a run."""

@@ -1,5 +1,5 @@
-"""Lines of sight over land: whether hills, cuttings and walls of tunnels hide a point, and how far along a road
-its driver sees."""
+"""Lines of sight over land: whether hills, cuttings and walls of tunnels hide a point, and how far along a
+road its driver sees."""
 
 import math
 from typing import NamedTuple

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from roadgpt.brief.amount import exactly
 from roadgpt.brief.scene import Land, Landform, Lie
-from roadgpt.ground.relief import LOOKS, Kind
+from roadgpt.ground.relief import Kind
 
 KINDS: dict[str, Kind] = {
     "flat": "flat", "level": "flat", "plain": "flat", "rolling": "rolling", "gentle": "rolling",
@@ -19,7 +19,9 @@ FORMS: dict[str, Landform] = {
 }  # fmt: skip
 NUMBERS = {"two": 2, "three": 3, "four": 4}
 LIES: dict[str, Lie] = {"along": "along", "across": "across", "through": "through", "crossed": "across"}
-SMALL = {"a", "an", "the", "and", "with", "of", "in", "on", "by", "land", "terrain", "country", "landscape"}
+SMALL = {
+    "a", "an", "the", "with", "of", "in", "on", "by", "to", "at", "land", "terrain", "country", "landscape",
+}  # fmt: skip
 
 
 class LandWish(NamedTuple):
@@ -31,33 +33,34 @@ class LandWish(NamedTuple):
 
 
 def land_in(words: str) -> LandWish:
-    """Reads English words, or the landscape of a plan such as 'lake left; ridge right'."""
+    """Reads English words, or the landscape of a plan such as 'lake left; ridge right'. How a way leads, as
+    in 'across', belongs to what stands before it in the same part of the text, or else to what comes next."""
     kind: Kind | None = None
     lands, unused = list[Land](), list[str]()
-    count, lie, is_between, side = 1, None, False, None
-    for word in re.findall(r"[a-z]+", words.lower()):
-        single = (
-            word.removesuffix("s") if word.removesuffix("s") in FORMS else word.replace("valleys", "valley")
-        )
-        if word in KINDS:
-            kind = KINDS[word]
-        elif word in LOOKS:
-            kind = word
-        elif single in FORMS:
-            form = FORMS[single]
-            if is_between and form == "ridge":
-                lands += [Land(kind=form, side="left"), Land(kind=form, side="right")]
-            else:
-                lands.append(Land(kind=form, lie=lie, side=side, count=exactly(count)))
-            count, lie, is_between, side = 1, None, False, None
-        elif word in NUMBERS:
-            count = NUMBERS[word]
-        elif word in LIES:
-            lie = LIES[word]
-        elif word == "between":
-            is_between = True
-        elif word in ("left", "right") and lands:
-            lands[-1] = lands[-1].model_copy(update={"side": word})
-        elif word not in SMALL:
-            unused.append(word)
+    for part in re.split(r"[;,.]|\band\b", words.lower()):
+        own, lie, count, is_between = list[Land](), None, 1, False
+        for word in re.findall(r"[a-z]+\d*", part):
+            form = FORMS.get(word) or FORMS.get(word.removesuffix("s"))
+            if word in KINDS:
+                kind = KINDS[word]
+            elif form is not None and is_between and form == "ridge":
+                own += [Land(kind=form, side="left"), Land(kind=form, side="right")]
+            elif form is not None:
+                own.append(Land(kind=form, lie=lie, count=exactly(count)))
+                lie, count = None, 1
+            elif word in NUMBERS:
+                count = NUMBERS[word]
+            elif re.fullmatch(r"x[1-9]", word) and own:
+                own[-1] = own[-1].model_copy(update={"count": exactly(int(word[1:]))})
+            elif word in LIES and own and own[-1].lie is None:
+                own[-1] = own[-1].model_copy(update={"lie": LIES[word]})
+            elif word in LIES:
+                lie = LIES[word]
+            elif word == "between":
+                is_between, count = True, 1
+            elif word in ("left", "right") and own:
+                own[-1] = own[-1].model_copy(update={"side": word})
+            elif word not in SMALL:
+                unused.append(word)
+        lands += own
     return LandWish(kind, tuple(lands), tuple(unused))

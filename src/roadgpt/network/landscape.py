@@ -4,6 +4,7 @@ bridges and in tunnels where the land asks for them."""
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
+from itertools import groupby, pairwise
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -16,12 +17,13 @@ from roadgpt.ground.relief import Kind, Relief, Stretch, Way, level_land, made, 
 from roadgpt.ground.sight import OPEN, Horizon, horizon_of, sight_distances
 from roadgpt.network.network import NetworkRoad
 from roadgpt.network.road_or_route import is_route, network_of
-from roadgpt.network.surface import pavement_of
+from roadgpt.network.surface import COVER, pavement_of
 from roadgpt.road import Road, World
 
 STEP = 2.0  # m between the points of roads that land is made around
 USUAL: Kind = "rolling"  # the kind of land in pictures where nothing is asked for
 MARGIN = 8.0  # m of road before and behind a bridge or a tunnel
+UNDER_BRIDGE = 2.0  # m from given land to a road on a bridge, at least
 SHORTEST = 12.0  # m, of a bridge or a tunnel
 
 
@@ -52,12 +54,12 @@ def _stretches(road: Road, world: World) -> list[Stretch]:
     and have neither."""
     found, taken = [], list[tuple[float, float]]()
     for each in stretches(world.scene.landscape, road.length):
-        if _kind(each) is None:
+        if (kind := _kind(each)) is None:
             found.append(each)
             continue
         best = None
-        for start, member in _roads(road, world):
-            low, high = start + MARGIN, start + member.road.length - MARGIN
+        for part in _parts_of(road, world):
+            low, high = part.start + MARGIN, part.end - MARGIN
             for a, b in taken:  # what lies before or behind other structures on the same road
                 is_behind = each.middle > (a + b) / 2
                 if a < high and b > low:
@@ -66,7 +68,8 @@ def _stretches(road: Road, world: World) -> list[Stretch]:
             if long >= SHORTEST:
                 middle = min(max(each.middle, low + long / 2), high - long / 2)
                 fit = (each.length - long + abs(middle - each.middle), middle, long)
-                best = fit if best is None or fit < best else best
+                if _has_room(road, world, kind, middle):
+                    best = fit if best is None or fit < best else best
         if best is None:  # without the bridge or the tunnel
             if each.structure is not None:
                 found.append(replace(each, structure=None))
@@ -114,28 +117,49 @@ def _kind(stretch: Stretch) -> Literal["bridge", "tunnel"] | None:
     return kind if kind in ("bridge", "tunnel") else None
 
 
-def _roads(road: Road, world: World) -> Sequence[tuple[float, NetworkRoad]]:
-    """Returns the roads outside junctions that a road follows, each with the station where it begins."""
-    if is_route(road):
-        return road.roads if road.has_way else ()
-    return ((0.0, network_of(road, world).roads[0]),)
+class _Part(NamedTuple):
+    """A part of a road or a route outside junctions, along one road of the network."""
+
+    start: float  # station in metres along the road or the route
+    end: float
+    member: NetworkRoad
+    is_along: bool  # whether it leads in the direction of the member's own stations
+
+
+def _parts_of(road: Road, world: World) -> list[_Part]:
+    if not is_route(road):
+        return [_Part(0.0, road.length, network_of(road, world).roads[0], is_along=True)]
+    found = []
+    groups = groupby(road.legs, key=lambda leg: leg.road) if road.has_way else ()
+    for (start, end), (number, legs) in zip(pairwise(road.ends), groups, strict=False):
+        member = road.network.road(number)
+        if member.junction is None and number not in road.network.roundabout_of:
+            found.append(_Part(start, end, member, member.profile.leads_along(next(legs).lane)))
+    return found
 
 
 def _span(stretch: Stretch, road: Road, world: World) -> Span | None:
-    kind = _kind(stretch)
-    if kind is None:
+    if (kind := _kind(stretch)) is None:
         return None
-    for start, member in _roads(road, world):
-        low, high = stretch.start - start, stretch.end - start
-        if low >= 0 and high <= member.road.length:
-            along = True
-            if is_route(road):
-                leg = next(each for each in road.legs if each.road == member.id)
-                along = member.profile.leads_along(leg.lane)
-            if not along:
-                low, high = member.road.length - high, member.road.length - low
-            return Span(kind, member.id, low, high)
+    for part in _parts_of(road, world):
+        if part.start <= stretch.start and stretch.end <= part.end:
+            # a route may follow the middle of a lane, which is longer or shorter than its road
+            scale = part.member.road.length / (part.end - part.start)
+            low, high = ((at - part.start) * scale for at in (stretch.start, stretch.end))
+            if not part.is_along:
+                low, high = part.member.road.length - high, part.member.road.length - low
+            return Span(kind, part.member.id, low, high)
     return None
+
+
+def _has_room(road: Road, world: World, kind: str, middle: float) -> bool:
+    """Returns whether given land leaves room under a bridge, or covers a tunnel, at its middle."""
+    given = world.site.ground
+    if not isinstance(given, GivenGround):
+        return True
+    x, y, z = road.at(middle).tolist()
+    land = float(given.relief.at(np.array([x]), np.array([y]))[0])
+    return bool(land < z - UNDER_BRIDGE if kind == "bridge" else land > z + COVER)
 
 
 def _land(way: Way, world: World, parts: Sequence[Stretch]) -> Relief:

@@ -119,7 +119,7 @@ def run_folder(campaign: Path, index: int) -> Path:
 def write_run(run: Run, campaign: Path, draw: Draw | None = None) -> Path:
     """Writes a Run into a campaign's folder, its test file last; returns the Run's own folder."""
     folder = write_run_folder(run, campaign, draw)
-    keep_ground(run.world, campaign)
+    keep_ground(run.world, campaign, folder)
     write_whole(campaign / test_name(run.index), test_text(run))
     return folder
 
@@ -137,13 +137,21 @@ def write_run_folder(run: Run, campaign: Path, draw: Draw | None = None) -> Path
     return folder
 
 
-def keep_ground(world: World, folder: Path) -> None:
-    """Writes the heights of given land into a folder of runs, if they are not there."""
+def keep_ground(world: World, folder: Path, own: Path | None = None) -> None:
+    """Writes the heights of given land into a folder of runs, if they are not there; where other land is,
+    into the run's ``own`` folder."""
     given = world.site.ground
-    if isinstance(given, GivenGround) and not (folder / BESIDE).is_file():
-        from roadgpt.ground.files import save_ground
+    if not isinstance(given, GivenGround):
+        return
+    from roadgpt.ground.files import attached, save_ground
 
-        write_whole(folder / BESIDE, save_ground(given))
+    if (folder / BESIDE).is_file():
+        try:
+            attached(str(given), folder)
+            return
+        except UsageError:
+            folder = folder if own is None else own
+    write_whole(folder / BESIDE, save_ground(given))
 
 
 def remove_run(index: int, campaign: Path) -> None:

@@ -142,7 +142,7 @@ def ground(
     roadgpt run "5 turns" --ground land.png"""
     import numpy as np
 
-    from roadgpt.ground.files import SUFFIXES, read_ground, write_ground
+    from roadgpt.ground.files import MOST, SUFFIXES, read_ground, write_ground
     from roadgpt.ground.relief import Way, made, stretches
 
     text, typed = " ".join(words), options.typed(click.get_current_context())
@@ -154,6 +154,10 @@ def ground(
     else:
         from roadgpt.ground.words import land_in
 
+        if (size / cell + 1) ** 2 > MOST:
+            raise UsageError(
+                f"land of {size:g} m with a height every {cell:g} m has too many; enlarge --cell"
+            )
         wish = land_in(text)
         if wish.kind is None and not wish.lands:
             raise UsageError(f"'{text}' names no land; say flat, rolling, hilly, mountain, valley, lake ...")

@@ -1,0 +1,45 @@
+"""Requires a road to have room in its land: for every bridge and tunnel that is asked for, and without walls
+that are higher than 15 m.
+
+A wall stands where two parts of the roads have no room for slopes between them. Without land, or on flat land
+that nobody asked for, nothing is checked."""
+
+import numpy as np
+
+from roadgpt.brief.amount import span
+from roadgpt.brief.model import Brief
+from roadgpt.check.finding import Finding
+from roadgpt.network import Network
+from roadgpt.road import Road, World
+
+HIGHEST = 15.0  # m, of a wall; higher ones are dams (ICOLD counts from 15 m on)
+BESIDE = 0.1  # m beside a rim, where the ground is looked at
+
+
+def inspect(network: Network, route: Road | None, brief: Brief | None, world: World) -> tuple[Finding, ...]:
+    """Reports bridges and tunnels without room, and the highest wall if it is too high."""
+    if route is None or not world.has_ground:
+        return ()
+    from roadgpt.network.landscape import crossings, ground_around
+
+    found, built = [], [each.kind for each in crossings(route, world)]
+    for kind in ("bridge", "tunnel"):
+        asked = sum(round(span(each.count).lo) for each in world.scene.landscape if each.kind == kind)
+        if built.count(kind) < asked:
+            sentence = f"asked for {asked} {kind}{'s' * (asked > 1)}, has room for {built.count(kind)}"
+            found.append(Finding("not_in_land", sentence))
+    rims = ground_around(route, world).pavement.segments
+    if len(rims):
+        ahead = rims[:, 3:5] - rims[:, :2]
+        ahead /= np.maximum(np.hypot(*ahead.T), 1e-9)[:, None]
+        middle = (rims[:, :3] + rims[:, 3:]) / 2
+        x, y = middle[:, :2].T + BESIDE * np.stack([ahead[:, 1], -ahead[:, 0]])
+        wall = np.abs(ground_around(route, world).beside(x, y) - middle[:, 2])
+        at = int(wall.argmax())
+        if wall[at] > HIGHEST:
+            sentence = (
+                f"at ({x[at]:.0f}, {y[at]:.0f}) a wall of {wall[at]:.0f} m stands between parts of the road "
+                f"that are too close for their heights; {HIGHEST:g} m is the most"
+            )
+            found.append(Finding("not_in_land", sentence, None, float(x[at]), float(y[at])))
+    return tuple(found)
