@@ -3,9 +3,9 @@
 import pytest
 
 from roadgpt.brief.amount import exactly
+from roadgpt.brief.land_words import land_in
 from roadgpt.brief.plan import read_scene
 from roadgpt.brief.scene import Land
-from roadgpt.ground.words import land_in
 
 
 def lands(words: str) -> list[tuple[object, ...]]:

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 from roadgpt.brief.amount import exactly
 from roadgpt.brief.scene import Land, Landform, Lie
-from roadgpt.ground.relief import Kind
+from roadgpt.brief.words import LandKind
 
-KINDS: dict[str, Kind] = {
+KINDS: dict[str, LandKind] = {
     "flat": "flat", "level": "flat", "plain": "flat", "rolling": "rolling", "gentle": "rolling",
     "hills": "hilly", "hilly": "hilly", "hill": "hilly", "mountain": "mountain", "mountains": "mountain",
     "mountainous": "mountain", "alpine": "mountain", "steep": "mountain",
@@ -27,7 +27,7 @@ SMALL = {
 class LandWish(NamedTuple):
     """What was read."""
 
-    kind: Kind | None
+    kind: LandKind | None
     lands: tuple[Land, ...]
     unused: tuple[str, ...]  # words that mean nothing here
 
@@ -35,7 +35,7 @@ class LandWish(NamedTuple):
 def land_in(words: str) -> LandWish:
     """Reads English words, or the landscape of a plan such as 'lake left; ridge right'. How a way leads, as
     in 'across', belongs to what stands before it in the same part of the text, or else to what comes next."""
-    kind: Kind | None = None
+    kind: LandKind | None = None
     lands, unused = list[Land](), list[str]()
     for part in re.split(r"[;,.]|\band\b", words.lower()):
         own, lie, count, is_between = list[Land](), None, 1, False

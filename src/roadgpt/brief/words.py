@@ -39,6 +39,8 @@ Kind = Literal[
 
 
 MOST_LANES = 4  # in one direction
+LandKind = Literal["flat", "rolling", "hilly", "mountain"]
+"""How high the hills of a landscape are."""
 Surroundings = Literal["country", "urban", "residential", "mountain", "access"]
 Compass = Literal["west", "southwest", "south", "southeast", "east", "northeast", "north", "northwest"]
 

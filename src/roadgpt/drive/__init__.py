@@ -12,6 +12,7 @@ This package has two kinds of plug-ins. A simulator (``simulators/``) is a car a
         def start(self, road, world, seed) -> None     # optional: called once, before time 0
         def steer(self, view: View) -> Command         # called every 20 ms"""
 
+import logging
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from roadgpt.road import Road, World
     from roadgpt.traffic import Tracks, Traffic
 
+NO_LAND = "this simulator builds no land: the road is driven without it"
 # The former name of CameraSpec; users' drivers may import it.
 Camera = CameraSpec
 
@@ -147,6 +149,8 @@ def simulate(
     road = world.lay(road)
     refuse_other_lane(road, world)
     refuse_ignored(engine, world, road, replay is not None)
+    if world.has_ground and not getattr(engine, "builds_land", False):
+        logging.getLogger("roadgpt").warning("roadgpt: %s", NO_LAND)
     traffic = None
     if replay is not None or world.scene.has_others:
         from roadgpt.traffic import begin  # a drive without others does not need it
@@ -171,6 +175,10 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None, r
             lacks = "apply the weather, light, surface and speed of a scene yet; leave the scene out"
         raise UsageError(f"this simulator cannot {lacks}, or drive in the simulator mujoco")
 
+    if world.site.ground and not getattr(simulator, "builds_land", False):
+        raise UsageError(
+            "this simulator cannot build land yet; leave --ground out, or drive in the simulator mujoco"
+        )
     # such a simulator builds what a plain road has: no traffic on the left, no lanes that a Route has merged
     is_simple = getattr(simulator, "single_roads_only", False)
     if is_simple and road is not None and only_road(road, world) is None:

@@ -25,12 +25,10 @@ from roadgpt.ground.relief import Relief
 
 MOST = 16_000_000  # heights in a file
 LARGEST_CELL, HIGHEST = 1000.0, 20_000.0  # m
-UNREADABLE = (
+UNREADABLE = (  # what the libraries raise that read files, if those are broken
     OSError, EOFError, ValueError, LookupError, TypeError, ArithmeticError, MemoryError, RecursionError,
     SyntaxError, BadZipFile, zlib.error, TokenError, Image.DecompressionBombError,
 )  # fmt: skip
-"""What the libraries raise that read files, if those are broken."""
-SUFFIXES = (".png", ".asc", ".npy", ".tif", ".tiff")
 DEGREE = 111_320.0  # m of a degree of latitude, and of longitude at the equator
 LEVELS = 65_535  # of 16 bits
 NO_DATA = -32_768.0  # the height of voids in files of SRTM
@@ -65,9 +63,8 @@ def attached(name: str, folder: Path) -> GivenGround:
 
 def read_ground(path: Path) -> GivenGround:
     """Returns the land in a file; raises UsageError if it cannot be read."""
-    readers = {".png": _png, ".asc": _asc, ".npy": _npy, ".tif": _tiff, ".tiff": _tiff}
-    if (reader := readers.get(path.suffix.lower())) is None:
-        raise UsageError(f"{path} is no land that can be read; give one of {', '.join(SUFFIXES)}")
+    if (reader := READERS.get(path.suffix.lower())) is None:
+        raise UsageError(f"{path} is no land that can be read; give one of {', '.join(READERS)}")
     try:
         return named(str(path), reader(path))
     except UNREADABLE as error:
@@ -160,6 +157,9 @@ def _tiff(path: Path) -> Relief:
     if is_geographic:
         wide, high = wide * DEGREE * math.cos(math.radians(middle)), high * DEGREE
     return _square(table, wide, high, path)
+
+
+READERS = {".png": _png, ".asc": _asc, ".npy": _npy, ".tif": _tiff, ".tiff": _tiff}
 
 
 def _square(table: Array, wide: float, high: float, path: Path) -> Relief:

@@ -24,7 +24,7 @@ BUCKET = 4  # cells of the grid along a side of a bucket of triangles
 DIP = 4.0  # m of land below a cutting, or above a fill, behind which it may go on
 REACH = 1.5  # cells around a segment in which it is known at once
 TINY = 1e-9
-NONE = -1
+NONE = -1  # no segment
 SLIVER = 1e-6  # m^2, twice the area of the smallest triangle that counts
 
 
@@ -164,12 +164,9 @@ def spread(
             for i in range(left, right + 1):
                 height = sign * _cone(segments, n, x + i * cell, y + j * cell, slope, sign)
                 if height < best[j, i]:
-                    best[j, i], owner[j, i] = height, n
-                    at = j * columns + i
+                    best[j, i], owner[j, i], at = height, n, j * columns + i
                     if np.isnan(roads[j, i]) and height < sign * land[j, i] + DIP and waits[at] == 0:
-                        queue[(first + count) % len(queue)] = at
-                        waits[at] = 1
-                        count += 1
+                        queue[(first + count) % len(queue)], waits[at], count = at, 1, count + 1
     while count > 0:
         at = queue[first]
         first, count = (first + 1) % len(queue), count - 1
@@ -182,25 +179,10 @@ def spread(
                     continue
                 height = sign * _cone(segments, n, x + i * cell, y + j * cell, slope, sign)
                 if height < best[j, i]:
-                    best[j, i], owner[j, i] = height, n
-                    to = j * columns + i
+                    best[j, i], owner[j, i], to = height, n, j * columns + i
                     if height < sign * land[j, i] + DIP and waits[to] == 0:
-                        queue[(first + count) % len(queue)] = to
-                        waits[to] = 1
-                        count += 1
+                        queue[(first + count) % len(queue)], waits[to], count = to, 1, count + 1
     return owner, sign * best
-
-
-@compiled
-def resampled(table: Array, of: Layers) -> Array:
-    """Returns the heights of the land without roads at the points of the grid, of the shape of ``table``."""
-    found = np.empty_like(table)
-    for j in range(table.shape[0]):
-        for i in range(table.shape[1]):
-            found[j, i] = cubic_at(
-                of.relief, of.relief_x, of.relief_y, of.relief_cell, of.x + i * of.cell, of.y + j * of.cell
-            )
-    return found
 
 
 @inlined

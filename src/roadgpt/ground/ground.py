@@ -9,7 +9,6 @@ from functools import cached_property
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from roadgpt.geometry.curve import Array
@@ -145,6 +144,11 @@ class Earthworks(NamedTuple):
     fill: float  # m^3
 
 
+def _on_grid(relief: Relief, x: float, y: float, cell: float, rows: int, columns: int) -> Array:
+    flat = np.meshgrid(x + cell * np.arange(columns), y + cell * np.arange(rows))
+    return relief.at(*(each.ravel() for each in flat)).reshape(rows, columns)
+
+
 @dataclass(frozen=True, eq=False)
 class Ground:
     """Heights of the land with its roads, at every point."""
@@ -178,7 +182,7 @@ class Ground:
             members, slope, np.ascontiguousarray(pavement.covers.reshape(-1, 9)), pavement.lintels,
         )  # fmt: skip
         roofs = grading.on_roads(layers.covers, *place, *shape)
-        land = grading.resampled(np.empty(shape), layers)
+        land = _on_grid(relief, *place, *shape)
         if (at := np.argwhere(~np.isnan(roofs))).size:
             x, y = np.asarray(layers.x + cell * at[:, 1]), np.asarray(layers.y + cell * at[:, 0])
             land[tuple(at.T)] = grading.heights_at(layers, x, y, False)
@@ -228,10 +232,6 @@ class Ground:
         found = self.water_level(x, y)
         return np.asarray(np.where(self.height(x, y) < found, found, np.nan))
 
-    def is_wet(self, x: Array, y: Array) -> NDArray[np.bool_]:
-        """Returns whether there is water, or the edge of it is near, at points ``(n,)``."""
-        return ~np.isnan(self.water_level(x, y))
-
     def water_level(self, x: Array, y: Array) -> Array:
         """Returns the heights ``(n,)`` of the surface of water, also near its edge, else NaN."""
         level = self.relief.water
@@ -243,12 +243,6 @@ class Ground:
     @cached_property
     def earthworks(self) -> Earthworks:
         """The volumes of soil between the land and the ground that was made of it."""
-        land = grading.resampled(np.empty(self.heights.shape), self.layers)
+        land = _on_grid(self.relief, self.layers.x, self.layers.y, self.cell, *self.heights.shape)
         above = (land - self.heights) * self.cell**2
         return Earthworks(float(above.clip(min=0).sum()), float((-above).clip(min=0).sum()))
-
-    @cached_property
-    def walls(self) -> NDArray[np.bool_]:
-        """Where cuttings and fills have no room for slopes, at each point of the grid."""
-        steep = np.hypot(*np.gradient(self.heights, self.cell))
-        return np.asarray(steep > 2.5 * self.layers.slope)

@@ -40,7 +40,7 @@ class GroundMesh:
 
 
 def mesh_of(ground: Ground, to_horizon: bool = True) -> GroundMesh:
-    """Returns the ground from the rims of the roads to the horizon, or only to the border of its grid."""
+    """Returns the ground from the rims of the roads to the horizon, or to the border of its grid."""
     rings, portals = ground.pavement.rims, ground.pavement.portals
     corners = _corners(ground)
     for portal in portals:
@@ -110,7 +110,7 @@ def _corners(ground: Ground) -> Array:
             break
         half, reach = size / 2, SIZES[len(found)][1]
         near = tree.query(cells + half)[0] < reach + size * 0.71
-        near |= (size > WATERSIDE) & ground.is_wet(*(cells + half).T)
+        near |= (size > WATERSIDE) & ~np.isnan(ground.water_level(*(cells + half).T))
         cells = np.concatenate([cells[near] + [a * half, b * half] for a in (0, 1) for b in (0, 1)])
     flat = np.unique(np.concatenate(found), axis=0)
     if tree is not None:  # corners of larger squares, between those of smaller ones

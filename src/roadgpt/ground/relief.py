@@ -5,7 +5,6 @@ Noise is gradient noise in several octaves. Source: Perlin, *Improving Noise*, S
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +13,10 @@ from scipy.spatial import cKDTree
 
 from roadgpt.brief.amount import span
 from roadgpt.brief.scene import Land
+from roadgpt.brief.words import LandKind
 from roadgpt.compiled import compiled, inlined
 from roadgpt.geometry.curve import Array
 
-Kind = Literal["flat", "rolling", "hilly", "mountain"]
 CELL = 8.0  # m between the points of land that is made
 MARGIN = 130.0  # m of land around the way
 LEAST = 40.0  # m, least side of the area without the margin
@@ -50,7 +49,7 @@ class _Look:
     grown: float  # m from the way, where they have their height
 
 
-LOOKS: dict[Kind, _Look] = {
+LOOKS: dict[LandKind, _Look] = {
     "flat": _Look(1.5, 140.0, 8.0, 90.0),
     "rolling": _Look(5.0, 150.0, 30.0, 80.0),
     "hilly": _Look(14.0, 220.0, 120.0, 110.0),
@@ -243,7 +242,7 @@ class _Places:
 
 
 def made(
-    way: Way, kind: Kind, stretches: Sequence[Stretch], seed: int, box: tuple[Array, Array] | None = None
+    way: Way, kind: LandKind, stretches: Sequence[Stretch], seed: int, box: tuple[Array, Array] | None = None
 ) -> Relief:
     """Returns land of a kind around a way, with valleys, ridges and water.
 
@@ -259,17 +258,8 @@ def made(
     return Relief(float(x[0]), float(y[0]), CELL, heights, water, beyond)
 
 
-def level_land(way: Way, level: float) -> Relief:
-    """Returns flat land around a way, ``level`` metres high and a little lower at the horizon."""
-    low, high = way.box
-    side = float((high - low).max())
-    shape = np.full((2, 2), level)
-    rings = _rings(low, high)
-    beyond = np.column_stack([rings, np.full(len(rings), level - 4.0)])
-    return Relief(float(low[0]), float(low[1]), side, shape, np.full((2, 2), np.nan), beyond)
-
-
-def _rings(low: Array, high: Array) -> Array:
+def rings_around(low: Array, high: Array) -> Array:
+    """Returns points ``(n, 2)`` as far as the horizon around the box from ``low`` to ``high``."""
     middle, radius = (low + high) / 2, float(np.hypot(*(high - low))) / 2
     turn = np.arange(BEARINGS) * 2 * np.pi / BEARINGS
     rings = [
@@ -280,9 +270,9 @@ def _rings(low: Array, high: Array) -> Array:
 
 
 def _beyond(
-    low: Array, high: Array, level: float, way: Way, kind: Kind, stretches: Sequence[Stretch], seed: int
+    low: Array, high: Array, level: float, way: Way, kind: LandKind, stretches: Sequence[Stretch], seed: int
 ) -> Array:
-    flat = _rings(low, high)
+    flat = rings_around(low, high)
     places = _Places.of(flat[:, 0], flat[:, 1], way)
     heights, water = _shaped(places, np.full(len(flat), level), way, kind, stretches, seed)
     far = np.repeat(HORIZON, BEARINGS)
@@ -319,7 +309,7 @@ def _pulled(values: Array, known: Array) -> Array:
 
 
 def _shaped(
-    places: _Places, base: Array, way: Way, kind: Kind, stretches: Sequence[Stretch], seed: int
+    places: _Places, base: Array, way: Way, kind: LandKind, stretches: Sequence[Stretch], seed: int
 ) -> tuple[Array, Array]:
     look = LOOKS[kind]
     hills = noise(places.x, places.y, look.length, 4, seed)
@@ -355,8 +345,7 @@ def _free_sides(stretches: Sequence[Stretch], seed: int) -> list[float]:
 
 
 def _softened(rise: Array) -> Array:
-    """Returns a rise without the steps where points change from one side of the way to the other, far away
-    from it; of single points, it is returned unchanged."""
+    """Returns a rise without steps between the sides of the way, far from it; of single points, unchanged."""
     return np.asarray(gaussian_filter(rise, 1.5, mode="nearest")) if rise.ndim == 2 else rise
 
 
@@ -376,13 +365,12 @@ def _across(stretch: Stretch, places: _Places, way: Way) -> tuple[Array, Array]:
     near = np.hypot(*(way.others[:, :2] - points[at, :2]).T) < reach
     own = points[np.abs(stations - stretch.middle) < reach, :2]
     other = way.others[~near, :2]
-    if len(other):
-        away = np.asarray(cKDTree(other).query(np.column_stack([places.x.ravel(), places.y.ravel()]))[0])
-        if len(own):
-            to_own = cKDTree(own).query(np.column_stack([places.x.ravel(), places.y.ravel()]))[0]
-            away = np.where(to_own < FREE + 6.0, np.inf, away)
-        return along, smooth(away.reshape(along.shape), 12.0, 60.0)
-    return along, np.ones_like(along)
+    if not len(other):
+        return along, np.ones_like(along)
+    away = _from(other, places)
+    if len(own):
+        away = np.where(_from(own, places) < FREE + 6.0, np.inf, away)
+    return along, smooth(away, 12.0, 60.0)
 
 
 def _beside(stretch: Stretch, side: float, way: Way, first: float, share: float) -> Array:

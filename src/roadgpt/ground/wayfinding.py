@@ -267,7 +267,9 @@ def _led_to(curve: PieceCurve, end: tuple[float, float]) -> PieceCurve:
     return curve
 
 
-def profile_over(relief: Relief, plan: PieceCurve, steepest: float) -> tuple[GradeProfile, float] | None:
+def profile_over(
+    relief: Relief, plan: PieceCurve, steepest: float, deepest: float = DEEPEST
+) -> tuple[GradeProfile, float] | None:
     """Returns the profile along a plan with the least area between road and land, which begins and ends on
     the land; and its greatest distance from the land in metres. None if the limits allow none."""
     n = max(4, round(plan.length / KNOT) + 1)
@@ -286,7 +288,7 @@ def profile_over(relief: Relief, plan: PieceCurve, steepest: float) -> tuple[Gra
     solved = linprog(
         np.r_[np.zeros(2 * n), np.ones(n)],
         limits, np.r_[most, most, land, -land], equal, np.zeros(n - 1),
-        bounds=[*[(-steepest, steepest)] * n, *ends, *[(0.0, DEEPEST)] * n], method="highs",
+        bounds=[*[(-steepest, steepest)] * n, *ends, *[(0.0, deepest)] * n], method="highs",
     )  # fmt: skip
     if solved.x is None:
         return None

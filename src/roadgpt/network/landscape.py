@@ -9,11 +9,12 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from roadgpt.brief.words import LandKind
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
 from roadgpt.ground.given import GivenGround
 from roadgpt.ground.ground import SLOPE, Ground, Pavement, Span, slope_for
-from roadgpt.ground.relief import Kind, Relief, Stretch, Way, level_land, made, stretches
+from roadgpt.ground.relief import Relief, Stretch, Way, made, rings_around, stretches
 from roadgpt.ground.sight import OPEN, Horizon, horizon_of, sight_distances
 from roadgpt.network.network import NetworkRoad
 from roadgpt.network.road_or_route import is_route, network_of
@@ -21,7 +22,7 @@ from roadgpt.network.surface import COVER, pavement_of
 from roadgpt.road import Road, World
 
 STEP = 2.0  # m between the points of roads that land is made around
-USUAL: Kind = "rolling"  # the kind of land in pictures where nothing is asked for
+USUAL: LandKind = "rolling"  # the kind of land in pictures where nothing is asked for
 MARGIN = 8.0  # m of road before and behind a bridge or a tunnel
 UNDER_BRIDGE = 2.0  # m from given land to a road on a bridge, at least
 SHORTEST = 12.0  # m, of a bridge or a tunnel
@@ -39,7 +40,7 @@ def ground_around(road: Road, world: World) -> Ground:
     way = Way(road.centreline(STEP) if road.has_way else np.concatenate(lines), np.concatenate(lines))
     if not (world.has_ground or any(each.profile.has_shoulders for each in network.roads)):
         level = min(world.site.z_floor, float(way.others[:, 2].min()) - 1.0)
-        return Ground.of(level_land(way, level), Pavement(np.empty((0, 3, 3)), ()))
+        return Ground.of(_level_land(way, level), Pavement(np.empty((0, 3, 3)), ()))
     parts = _stretches(road, world)
     spans = [span for each in parts if (span := _span(each, road, world)) is not None]
     relief = _land(way, world, parts)
@@ -162,12 +163,22 @@ def _has_room(road: Road, world: World, kind: str, middle: float) -> bool:
     return bool(land < z - UNDER_BRIDGE if kind == "bridge" else land > z + COVER)
 
 
+def _level_land(way: Way, level: float) -> Relief:
+    """Returns flat land around a way, ``level`` metres high and a little lower at the horizon."""
+    low, high = way.box
+    side = float((high - low).max())
+    shape = np.full((2, 2), level)
+    rings = rings_around(low, high)
+    beyond = np.column_stack([rings, np.full(len(rings), level - 4.0)])
+    return Relief(float(low[0]), float(low[1]), side, shape, np.full((2, 2), np.nan), beyond)
+
+
 def _land(way: Way, world: World, parts: Sequence[Stretch]) -> Relief:
     given = world.site.ground
     if isinstance(given, GivenGround):
         return given.relief
     if world.site.made_ground is None and given:
         raise UsageError(f"the heights of the land '{given}' are not at hand; give its file with --ground")
-    hills: Kind = "hilly" if any(each.land.kind in ("valley", "ridge") for each in parts) else USUAL
+    hills: LandKind = "hilly" if any(each.land.kind in ("valley", "ridge") for each in parts) else USUAL
     kind, seed = world.site.made_ground or (hills, 0)
     return made(way, kind, parts, seed)

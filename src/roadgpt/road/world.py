@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from statistics import mean
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
 
 from pydantic import (
     AfterValidator,
@@ -31,7 +31,7 @@ from roadgpt.brief.model import CentreLine
 from roadgpt.brief.plan import read_scene, scene_plan
 from roadgpt.brief.scene import Scene, with_lands
 from roadgpt.brief.visibility import weather_drawn
-from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, USUAL_MAP
+from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, USUAL_MAP, LandKind
 from roadgpt.errors import BriefError, UsageError
 from roadgpt.ground.given import BESIDE, NAME, GivenGround
 
@@ -52,7 +52,7 @@ Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 FRICTIONS = (0.0, 2.0)  # the first is not reached
 SPEEDS = (5 / 3.6, 300 / 3.6)  # m/s, of speed limits in options and files
-LAND_KINDS = ("flat", "rolling", "hilly", "mountain")
+LAND_KINDS: tuple[LandKind, ...] = get_args(LandKind)
 LANE_WIDTHS = (2.0, 10.0)  # m, of the driven lane in options and files
 STEEPEST = 0.12  # ratio, largest superelevation of bends
 OWN = {"lanes": "1+1", "lane_width_end": None, "centre_line": None, "bank": "none"}

@@ -142,17 +142,17 @@ def ground(
     roadgpt run "5 turns" --ground land.png"""
     import numpy as np
 
-    from roadgpt.ground.files import MOST, SUFFIXES, read_ground, write_ground
+    from roadgpt.ground.files import MOST, READERS, read_ground, write_ground
     from roadgpt.ground.relief import Way, made, stretches
 
     text, typed = " ".join(words), options.typed(click.get_current_context())
     unused: tuple[str, ...] = ()
-    if len(words) == 1 and Path(text).suffix.lower() in SUFFIXES:
+    if len(words) == 1 and Path(text).suffix.lower() in READERS:
         if unheeded := sorted(typed & {"size", "seed", "cell"}):
             raise UsageError(f"a file has its own heights; leave out --{unheeded[0]}")
         relief = read_ground(Path(text)).relief
     else:
-        from roadgpt.ground.words import land_in
+        from roadgpt.brief.land_words import land_in
 
         if (size / cell + 1) ** 2 > MOST:
             raise UsageError(

@@ -57,6 +57,7 @@ class MujocoSimulator:
     """Simulates a saloon car in steps of 2 ms; the driver returns a command every 20 ms."""
 
     moves_others = True
+    builds_land = True
 
     def __init__(self, car: Car = ETK_LIKE, start_offset: float = 0.0) -> None:
         """Uses this car, which starts ``start_offset`` metres to the left of the middle of its lane."""
