@@ -2,7 +2,7 @@
 between road and ground, open seams and buried roads; and says how long land takes.
 
     python benchmarks/bench_land.py [roads] [networks]
-    python benchmarks/bench_land.py --ways FOLDER     ways over SRTM tiles (.hgt.zip) against straight lines"""
+    python benchmarks/bench_land.py --ways FOLDER    ways over SRTM tiles (.hgt.zip) and straight lines"""
 
 import argparse
 import json
@@ -84,9 +84,8 @@ class Caster:
                 continue
             x, y = points[own, 0, None], points[own, 1, None]
             a, b, c = near[:, 0], near[:, 1], near[:, 2]
-            w = np.stack([
-                (q[:, 0] - x) * (r[:, 1] - y) - (q[:, 1] - y) * (r[:, 0] - x) for q, r in ((b, c), (c, a), (a, b))
-            ])  # fmt: skip
+            pairs = ((b, c), (c, a), (a, b))
+            w = np.stack([(q[:, 0] - x) * (r[:, 1] - y) - (q[:, 1] - y) * (r[:, 0] - x) for q, r in pairs])
             whole = w.sum(axis=0)
             with np.errstate(all="ignore"):
                 share = w / whole

@@ -14,6 +14,8 @@ This module adds features of the road's geometry; all but the first come from ``
     CLIMB         height of the end above the start, m
     LENGTH        length, m
 
+    SIGHT         in land: least distance at which the driver sees the road, m
+
 and, of a drive with others on the road, what its verdict says:
 
     COLLISIONS, NEAR_MISSES, BLOCKED, SPEEDING   numbers of these incidents
@@ -35,7 +37,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road import Road
 from roadgpt.verdict import Verdict
 
-DRIVEN = ("STD_SA", "MEAN_LP", "MAX_LP")  # the features that a road has only after a drive
+DRIVEN = ("STD_SA", "MEAN_LP", "MAX_LP", "SIGHT")  # the features that a sketch of a road has not
 DIRECTIONS = 36  # of 10 degrees each
 WIDEST = 1000.0  # m; larger radii count as this radius
 TIGHTEST = 0.2  # 1 + 2k is kept above this
@@ -56,6 +58,7 @@ BOUNDS: dict[str, tuple[float, float]] = {
     "GRADE": (0.0, 15.0),  # percent
     "CLIMB": (-40.0, 40.0),  # m
     "LENGTH": (20.0, 620.0),  # m
+    "SIGHT": (0.0, 200.0),  # m
 }
 """The range of the feature map along each axis; values beyond this range belong to the outermost cell."""
 
