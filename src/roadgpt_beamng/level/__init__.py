@@ -4,6 +4,7 @@
                              main.materials.json
                              main/items.level.json, main/MissionGroup/...
                              scenarios/drive/drive.json, drive.prefab.json
+                             terrain.ter, terrain.terrain.json, where the World has land
 
 To use a level, copy ``NAME-beamng`` to ``mods/unpacked`` in BeamNG's user folder, or copy the contents of
 ``NAME-beamng/levels`` to ``levels`` in that folder.
@@ -27,6 +28,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 from roadgpt.road.profile import DASH, GAP
 from roadgpt_beamng.level.roads import GOAL, OWN, LevelRoad, Strip, level_road
+from roadgpt_beamng.level.terrain import write_terrain
 
 Item = dict[str, Any]
 # Arbitrary but fixed, so that ids are always the same.
@@ -44,12 +46,19 @@ class BeamNG:
 
     name = "beamng"
     suffix = "-beamng"
-    lacks = ("the land around",)
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the level folder. ``poses`` is ignored, because a level cannot hold a drive."""
         title = path.name.removesuffix(self.suffix)
-        write_level(road, path / "levels", level_name(title), world, title)
+        name = level_name(title)
+        write_level(road, path / "levels", name, world, title)
+        if world.has_ground:
+            folder = path / "levels" / name
+            block = write_terrain(road, world, folder, name)
+            item = _object(name, "theTerrain", "TerrainBlock", "sky_and_ground", **block)
+            objects = folder / "main/MissionGroup/sky_and_ground/items.level.json"
+            lines = [line for line in objects.read_text("utf-8").splitlines() if '"GroundPlane"' not in line]
+            objects.write_text("\n".join([*lines, json.dumps(item)]) + "\n", "utf-8", newline="\n")
 
 
 def level_name(title: str) -> str:
