@@ -223,7 +223,7 @@ def test_a_change_of_the_scene_alone_keeps_the_road_and_is_said() -> None:
     assert any(
         "that brakes with 4 m/s2" in said and "that brakes with 6 m/s2" in said for said in made.changes
     )
-    assert any("not built yet: a lake" in said for said in made.changes)
+    assert any("a lake along the road on the left" in said for said in made.changes)
     both = edit(road, read_change_plan("turn 2: radius x0.9 && rain: remove"), world)
     assert both.design == edit(road, read_change_plan("turn 2: radius x0.9"), world).design != road
     with pytest.raises(IdleEditError, match="so already"):

@@ -38,6 +38,7 @@ export = ["csv", "opendrive"]
 
 [world]
 map_size = 400
+ground = "hilly:3"
 lanes = "2+1"
 lane_width = 3.25
 lane_width_end = 3.5

@@ -48,13 +48,12 @@ def test_a_lane_that_cannot_be_is_refused(line: str, said: str) -> None:
         world_for(read(line, "plan"), World())
 
 
-def test_what_lies_beside_the_road_is_said_to_be_not_built() -> None:
-    brief = read("straight && lake along left; bridge x2 len=40", "plan")
+def test_what_is_not_built_of_the_landscape_is_said() -> None:
+    brief = read("straight && lake along left; town through; bridge x2 len=40", "plan")
     (said,) = (each for each in remarks(brief, 250.0) if "not built" in each)
-    assert said == (
-        "not built yet: a lake along the road on the left, 2 bridges 40 metres long; the road is made "
-        "without it"
-    )
+    assert said == "not built yet: a town to go through; the road is made without it"
+    without = read("straight && lake along left; bridge x2 len=40", "plan")
+    assert not any("not built" in each for each in remarks(without, 250.0))
 
 
 def test_a_road_that_is_there_is_driven_in_the_lane_that_is_said_or_not_at_all() -> None:

@@ -15,7 +15,17 @@ from roadgpt.export.georeference import degrees
 from roadgpt.network import Route, build_route
 from roadgpt.road import World, read_design
 
-HOLD = {"gltf", "opendrive", "opendrive17", "csv", "geojson", "openscenario", "commonroad", "lanelet2"}
+HOLD = {
+    "gltf",
+    "heightmap",
+    "opendrive",
+    "opendrive17",
+    "csv",
+    "geojson",
+    "openscenario",
+    "commonroad",
+    "lanelet2",
+}
 WORLD = World()
 RADIUS = 15.0  # m, of the central island in the design below
 

@@ -98,6 +98,11 @@ def beamng(folder: Path) -> float:
     return float(lanes["nodes"][0][3]) / 2
 
 
+def heightmap(folder: Path) -> float:
+    (road,) = json.loads((folder / "road.json").read_text())["roads"]
+    return float(road["nodes"][0][3]) / 2
+
+
 READERS: dict[str, Callable[[Path], float] | None] = {
     "beamng": beamng,
     "commonroad": commonroad,
@@ -105,6 +110,7 @@ READERS: dict[str, Callable[[Path], float] | None] = {
     "csv": table,
     "geojson": geojson,
     "gltf": gltf,
+    "heightmap": heightmap,
     "lanelet2": lanelets,
     "opendrive": opendrive,
     "opendrive17": opendrive,

@@ -1,7 +1,7 @@
 """Who is seen over land: over crests, in bends in cuttings, through tunnels, and behind hills.
 
 The second opinions: formulas of road design for crests and for bends beside an obstacle (AASHTO, *A Policy on
-Geometric Design of Highways and Streets*, 3.2.6, 3.3.12 and 3.4.6), and a slow caster of rays in fine steps."""
+Geometric Design of Highways and Streets*, 3.2.6, 3.3.12, 3.4.6), and a slow caster of rays in fine steps."""
 
 import math
 

@@ -37,7 +37,7 @@ def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str
                 " made without it"
             )
         elif name in LANDS:
-            continue
+            yield f"{NOT_BUILT[name]}: the road gets {LANDS[name]}"
         elif name in NOT_BUILT:
             yield f"{NOT_BUILT[name]} is not built yet; the road is made without it"
         elif name not in SURFACES:

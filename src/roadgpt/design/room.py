@@ -83,9 +83,10 @@ def scene_remark(brief: Brief, found: World) -> str:
     if brief.scene == found.scene:
         return ""
     if brief.scene == Scene():
-        land = f"; {land_remark(found.scene)}" if found.scene.landscape else ""
-        friction = f"; friction {found.site.friction:g}" if found.scene.surfaces else ""
-        return f"on the road: {scene_text(found.scene)}{friction}{land}"
+        friction = f"friction {found.site.friction:g}" if found.scene.surfaces else ""
+        parts = (scene_text(found.scene), friction, land_remark(found.scene))
+        is_land = found.scene.model_copy(update={"landscape": ()}) == Scene()
+        return f"{'the land' if is_land else 'on the road'}: {'; '.join(filter(None, parts))}"
     return f"the words have a scene, but --scene '{scene_plan(found.scene)}' is set and used"
 
 

@@ -23,6 +23,7 @@ from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended, Handover, c
 from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.view import CameraSpec, Command, JunctionAhead, LightAhead, Other, SignAhead, View
 from roadgpt.errors import UsageError
+from roadgpt.ground.given import GivenGround
 from roadgpt.network import only_road, refuse_other_lane, refuse_without_route
 
 if TYPE_CHECKING:
@@ -175,7 +176,7 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None, r
             lacks = "apply the weather, light, surface and speed of a scene yet; leave the scene out"
         raise UsageError(f"this simulator cannot {lacks}, or drive in the simulator mujoco")
 
-    if world.site.ground and not getattr(simulator, "builds_land", False):
+    if isinstance(world.site.ground, GivenGround) and not getattr(simulator, "builds_land", False):
         raise UsageError(
             "this simulator cannot build land yet; leave --ground out, or drive in the simulator mujoco"
         )

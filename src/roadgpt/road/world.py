@@ -163,8 +163,7 @@ class Parts(Frozen):
 
     reader: str = Field(
         "model",
-        description="Reads the description: model (neural networks), chat (a language model), plan (plans "
-        "only).",
+        description="Reads the description: model, chat, or plan.",
     )
     designer: str = Field("planner", description="planner, or thesis (a language model).")
     rules: Literal["strict", "sbft"] = Field(
@@ -212,8 +211,7 @@ class Site(BaseModel):
     z_floor: float = -28.0
     """Height in metres of the flat ground of the simulator's map."""
     ground: Annotated[str, WrapValidator(ground_in)] = Field(
-        "", description="The land: flat, rolling, hilly or mountain, with a seed as in hilly:3; or a file of "
-        "heights. [default: as described]",
+        "", description="Land: flat, hilly:3 (seed), or a file of heights.",
     )  # fmt: skip
 
     @model_validator(mode="before")

@@ -27,13 +27,14 @@ from roadgpt.scene.weather import Weather
 Image = NDArray[np.uint8]
 
 
+STEP = 5.0  # m between the points of the way beside which trees stand
 FARTHEST = 1e7  # m or rad; greatest number in a pose
 
 
 def landscape(road: Road, world: World) -> tuple[Ground, Trees]:
     """Returns the ground around all roads of a road's network, and the trees on it."""
     ground = ground_around(road, world)
-    return ground, plant(ground, world.scene.landscape)
+    return ground, plant(ground, world.scene.landscape, road.centreline(STEP)[:, :2])
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,13 +21,14 @@ from roadgpt.scene.shade import Colour, air, hazy
 
 SEED = 11
 SIDE = 128  # texels; width and height of a picture
-AVENUE = 9.0  # m between the trees of an avenue
+AVENUE, ROW = 9.0, 15.5  # m between the trees of an avenue, and from the rim to their row
 BROAD, CONIFERS = 3, 2  # numbers of pictures of broad-leaved trees and of conifers
 CLEAR = 9.0  # m from the outer edge of the shoulder to the nearest tree
 EACH = 210.0  # m^2 of land per tree, before trees near roads are removed
 MOST = 900  # trees
 SMALLEST = 0.7  # pixels high, of a tree that is drawn
 NEAREST = 2.0  # m from the camera
+USUAL_SHARE = 0.1  # of the trees of a forest that also stand on its other side
 STEEPEST = 0.9  # metres up for each metre aside, where trees still stand
 
 
@@ -40,10 +41,11 @@ class Trees(NamedTuple):
     tints: Array  # factor by which the brightness of each tree's picture is multiplied, (n,)
 
 
-def plant(ground: Ground, lands: Sequence[Land] = ()) -> Trees:
+def plant(ground: Ground, lands: Sequence[Land], way: Array) -> Trees:
     """Returns trees in loose groups on dry ground that is not too steep, none of them near a road.
 
-    A forest among ``lands`` has many more, on both sides or on one; an avenue has rows beside the road."""
+    A forest among ``lands`` has many more, on both sides or on one of ``way``, points ``(n, 2)``; an avenue
+    has rows beside the road."""
     rng = np.random.default_rng(SEED)
     (x0, x1), (y0, y1) = ground.x[[0, -1]], ground.y[[0, -1]]
     is_forest = any(land.kind == "forest" for land in lands)
@@ -66,6 +68,12 @@ def plant(ground: Ground, lands: Sequence[Land] = ()) -> Trees:
     steep = np.hypot(ground.height(x + 1.0, y) - z, ground.height(x, y + 1.0) - z)
     dry = np.isnan(ground.water(x, y)) & (steep < STEEPEST) & np.isnan(ground.road(x, y))
     kept = inside & dry & (away > CLEAR + widths / 2)
+    sides = {land.side for land in lands if land.kind == "forest"}
+    if len(sides) == 1 and (side := sides.pop()):
+        nearest = cKDTree(way).query(spots)[1]
+        ahead, off = np.gradient(way, axis=0)[nearest], spots - way[nearest]
+        is_left = ahead[:, 0] * off[:, 1] - ahead[:, 1] * off[:, 0] > 0
+        kept &= (is_left == (side == "left")) | (rng.random(count) < USUAL_SHARE)
     foot = np.column_stack([spots, z - 0.15])
     return Trees(foot[kept], np.column_stack([heights, widths])[kept], looks[kept], tints[kept])
 
@@ -81,7 +89,7 @@ def _with_avenue(spots: Array, ground: Ground, is_lined: bool) -> tuple[Array, i
         line = np.column_stack([np.interp(at, along, ring[:, k]) for k in (0, 1)])
         ahead = np.gradient(line, axis=0)
         ahead /= np.maximum(np.hypot(*ahead.T), 1e-9)[:, None]
-        rows.append(line + (CLEAR + AVENUE / 2) * np.column_stack([ahead[:, 1], -ahead[:, 0]]))
+        rows.append(line + ROW * np.column_stack([ahead[:, 1], -ahead[:, 0]]))
     return np.concatenate([*rows, spots]), sum(map(len, rows))
 
 

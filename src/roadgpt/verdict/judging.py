@@ -321,7 +321,7 @@ def _failed(
     told = FAILED[cause].format(
         side=side,
         where=", into the next lane of its direction," if is_beside else "",
-        reached=f"after {drive['s'][step]:.0f} m",
+        reached=f"after {min(drive['s'][step], road.length):.0f} m",
         fast=f"at {drive['speed'][step] * 3.6:.0f} km/h",
         how="" if contact else f": {how}",
         length=road.length,

@@ -19,6 +19,7 @@ from roadgpt.road import Road, World
 VERSION, FULL = 9, 65_535
 SMALLEST = 256  # heights along a side; sides are powers of two
 MATERIAL = "Grass"
+HOLE, MOUTH = 255, 2.0  # the layer without land; m before and behind the mouth of a tunnel
 BELOW = 0.15  # m by which the land lies below roads, whose meshes carry the wheels
 
 
@@ -34,7 +35,13 @@ def write_terrain(road: Road, world: World, folder: Path, level: str) -> dict[st
     lowest, span = float(heights.min()), max(float(np.ptp(heights)), 1.0)
     levels = np.rint((heights - lowest) / span * FULL).astype("<u2")
     name = MATERIAL.encode()
-    data = struct.pack("<BI", VERSION, size) + levels.tobytes() + bytes(size * size)
+    layers = np.zeros(levels.shape, "u1")
+    for portal in ground.pavement.portals:  # the mouth of a tunnel is open
+        off = np.stack([x, y], axis=-1) - (portal.left + portal.right)[:2] / 2
+        half = np.hypot(*(portal.left - portal.right)[:2]) / 2
+        is_before = (np.abs(off @ portal.ahead) < MOUTH) & (np.hypot(*off.T) < half + MOUTH)
+        layers[: len(ground.y), : len(ground.x)][is_before.reshape(ground.heights.shape)] = HOLE
+    data = struct.pack("<BI", VERSION, size) + levels.tobytes() + layers.tobytes()
     data += struct.pack("<IB", 1, len(name)) + name
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "terrain.ter").write_bytes(data)

@@ -263,6 +263,7 @@ class Land(NamedTuple):
 
 
 BRIDGE, TUNNEL = 1.0, 2.0
+ROOF, UNDERSIDE = 5.0, 1.5  # m above the road of a tunnel, and below that of a bridge, where land may be
 NO_LAND = Land(np.empty((0, 0)), np.empty((0, 0)), 0.0, 0.0, 1.0, 0.0, np.empty((0, 3)))
 
 
@@ -389,19 +390,27 @@ def crossing_at(land: Land, s: float) -> float:
 
 
 @inlined
+def is_over_land(land: Land, s: float, z: float, road: float, beyond: float) -> bool:
+    """Returns whether land, and not the road, is under a point at a height: beside the road, on the hill over
+    a tunnel, and under a bridge. ``road`` is the height of the road's surface, continued to the point."""
+    if land.heights.shape[0] == 0:
+        return False
+    crossing = crossing_at(land, s)
+    if crossing == TUNNEL:
+        return z > road + ROOF or beyond > ROOF
+    return beyond > 0.0 or (crossing == BRIDGE and z < road - UNDERSIDE)
+
+
+@inlined
 def land_contact(
     land: Land, x: float, y: float, s: float, road: float, slope: float, lateral: float, heading: float,
     beyond: float,
 ) -> tuple[float, Vector]:  # fmt: skip
-    """Returns the height of the land at a point and its normal. In a tunnel, it is the road's surface,
-    continued.
+    """Returns the height of the land at a point and its normal.
 
     Near the rim, ``beyond`` metres from it, cells of the grid reach over the road; there the slope begins at
     the height of the rim. ``road``, ``slope`` and ``lateral`` are the height and slopes of the road's
     surface, continued to the point."""
-    crossing = crossing_at(land, s)
-    if crossing == TUNNEL:
-        return road, normal_of(slope, lateral, heading)
     u = min(max((x - land.x) / land.cell, 0.0), land.heights.shape[1] - 1.0)
     v = min(max((y - land.y) / land.cell, 0.0), land.heights.shape[0] - 1.0)
     i, j = min(int(u), land.heights.shape[1] - 2), min(int(v), land.heights.shape[0] - 2)
@@ -411,7 +420,7 @@ def land_contact(
     height = (a * (1.0 - u) + b * u) * (1.0 - v) + (c * (1.0 - u) + d * u) * v
     rise_x = ((b - a) * (1.0 - v) + (d - c) * v) / land.cell
     rise_y = ((c - a) * (1.0 - u) + (d - b) * u) / land.cell
-    if beyond < BLURRED * land.cell and crossing == 0.0:
+    if beyond < BLURRED * land.cell and crossing_at(land, s) == 0.0:
         most = land.slope * beyond
         if abs(height - road) > most:
             height = road + most if height > road else road - most
@@ -434,7 +443,7 @@ def _ground_contact(
     wheel[AT] = s
     normal = normal_of(slope, lateral, heading)
     beyond = beyond_rim(ground, s, t)
-    if beyond > 0.0 and ground.land.heights.shape[0] > 0:
+    if is_over_land(ground.land, s, centre[2], height, beyond):
         height, normal = land_contact(
             ground.land, centre[0], centre[1], s, height, slope, lateral, heading, beyond
         )
@@ -643,7 +652,7 @@ def hull_forces(mj: Any, car: Any, ground: Any, station: float, hull: FloatArray
         normal, beyond, deepest = normal_of(slope, lateral, heading), beyond_rim(ground, s, t), DEEP
         if ground.land.heights.shape[0] > 0:
             deepest = SOLID
-            if beyond > 0.0:
+            if is_over_land(ground.land, s, pz, height, beyond):
                 height, normal = land_contact(ground.land, px, py, s, height, slope, lateral, heading, beyond)
         elif beyond > 0.0:
             continue

@@ -36,6 +36,7 @@ from roadgpt.drive.simulators.mujoco.dynamics import (
     centre_height,
     crossing_at,
     hull_points,
+    is_over_land,
     land_contact,
     model_of,
     normal_of,
@@ -56,6 +57,7 @@ FELL, ROLLED, CRASHED, SANK = range(1, 5)
 SHOCK = (
     80.0  # m/s^2, mean of a control step, beside the road: no tyre brakes that hard, a slope stopped the car
 )
+IN_THE_AIR = 0.5  # m above the land, of a car that falls off a bridge
 BESIDE_WALL = 0.9  # m from a wall to the middle of the car that touches it
 CONTAINED = 10.4  # m/s across a parapet up to which it holds a car (EN 1317-2, N2: 110 km/h at 20 degrees)
 NO_WATER = -1e6  # m
@@ -262,15 +264,16 @@ def _look(mj: MujocoHandles, car: Any, ground: Ground, car_state: CarState, row:
     nx, ny, nz = normal_of(slope, lateral, heading)
     beyond, land = beyond_rim(ground, s, t), ground.land
     if land.heights.shape[0] > 0:
-        crossing = crossing_at(land, s)
-        if crossing > 0.0 and -BESIDE_WALL < beyond < 0.0:
+        crossing, low = crossing_at(land, s), z - car.cg_height
+        if crossing > 0.0 and -BESIDE_WALL < beyond < 0.0 and abs(low - height) < FALLEN:
             aside = abs(vy * math.cos(heading) - vx * math.sin(heading))
             if crossing == TUNNEL or aside < CONTAINED:
                 return CRASHED
-        if beyond > 0.0 and crossing == BRIDGE and z - car.cg_height < height - FALLEN:
-            return FELL
-        if beyond > 0.0:
+        if is_over_land(land, s, low, height, beyond):
+            deck = height
             height, (nx, ny, nz) = land_contact(land, x, y, s, height, slope, lateral, heading, beyond)
+            if crossing == BRIDGE and height + IN_THE_AIR < low < deck - FALLEN:
+                return FELL
             i = min(max(int((x - land.x) / land.cell + 0.5), 0), land.heights.shape[1] - 1)
             j = min(max(int((y - land.y) / land.cell + 0.5), 0), land.heights.shape[0] - 1)
             if z < land.water[j, i]:
