@@ -163,7 +163,7 @@ class Parts(Frozen):
 
     reader: str = Field(
         "model",
-        description="Reads the description: model, chat, or plan.",
+        description="Reads the words: model, chat, or plan.",
     )
     designer: str = Field("planner", description="planner, or thesis (a language model).")
     rules: Literal["strict", "sbft"] = Field(
