@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 import roadgpt
+from roadgpt.brief.land_words import land_in
 from roadgpt.brief.model import Brief
 from roadgpt.check import inspect
 from roadgpt.design.designers.planner import Planner
 from roadgpt.design.on_land import placed
 from roadgpt.errors import DesignError
 from roadgpt.ground.files import named
-from roadgpt.ground.relief import Kind, Relief, Way, made, stretches
-from roadgpt.ground.words import land_in
+from roadgpt.ground.relief import Relief, Way, made, stretches
 from roadgpt.road import Design, Road, World, build
 
 SIDE = 800.0
@@ -42,7 +42,7 @@ def plane(east: float, north: float = 0.0, side: float = SIDE) -> Relief:
 def hills(words: str, seed: int) -> Relief:
     """Made land as `roadgpt ground` makes it."""
     wish, way = land_in(words), Way.through_the_middle(SIDE, 100.0, seed)
-    kind: Kind = wish.kind or "hilly"
+    kind = wish.kind or "hilly"
     return made(way, kind, stretches(wish.lands, SIDE), seed, (np.zeros(2), np.full(2, SIDE)))
 
 

@@ -21,7 +21,7 @@ from roadgpt.ground.relief import cubic_at
 
 Integers = NDArray[np.int32]
 BUCKET = 4  # cells of the grid along a side of a bucket of triangles
-DIP = 4.0  # m of land below a cutting, or above a fill, behind which it may go on
+DIP = 1.5  # m of land below a cutting, or above a fill, behind which it may go on
 REACH = 1.5  # cells around a segment in which it is known at once
 TINY = 1e-9
 NONE = -1  # no segment
@@ -165,7 +165,7 @@ def spread(
                 height = sign * _cone(segments, n, x + i * cell, y + j * cell, slope, sign)
                 if height < best[j, i]:
                     best[j, i], owner[j, i], at = height, n, j * columns + i
-                    if np.isnan(roads[j, i]) and height < sign * land[j, i] + DIP and waits[at] == 0:
+                    if np.isnan(roads[j, i]) and waits[at] == 0:
                         queue[(first + count) % len(queue)], waits[at], count = at, 1, count + 1
     while count > 0:
         at = queue[first]
@@ -173,14 +173,15 @@ def spread(
         waits[at] = 0
         row, column = at // columns, at % columns
         n = owner[row, column]
+        cuts = best[row, column] < sign * land[row, column] + DIP
         for j in range(max(row - 1, 0), min(row + 2, rows)):
             for i in range(max(column - 1, 0), min(column + 2, columns)):
                 if owner[j, i] == n or not np.isnan(roads[j, i]):
                     continue
                 height = sign * _cone(segments, n, x + i * cell, y + j * cell, slope, sign)
-                if height < best[j, i]:
+                if height < best[j, i] and (cuts or height < sign * land[j, i] + DIP):
                     best[j, i], owner[j, i], to = height, n, j * columns + i
-                    if height < sign * land[j, i] + DIP and waits[to] == 0:
+                    if waits[to] == 0:
                         queue[(first + count) % len(queue)], waits[to], count = to, 1, count + 1
     return owner, sign * best
 
@@ -210,7 +211,10 @@ def height_at(of: Layers, x: float, y: float) -> float:
 @inlined
 def land_at(of: Layers, x: float, y: float) -> float:
     """Returns the height of the ground at one point beside the roads."""
-    rows, columns = of.heights.shape
+    rows, columns = of.cuts.shape
+    if rows > 0:
+        x = min(max(x, of.x), of.x + (columns - 1) * of.cell)
+        y = min(max(y, of.y), of.y + (rows - 1) * of.cell)
     found = cubic_at(of.relief, of.relief_x, of.relief_y, of.relief_cell, x, y)
     for k in range(len(of.covers)):
         roof = _height_on(of.covers[k], x, y)
@@ -219,13 +223,18 @@ def land_at(of: Layers, x: float, y: float) -> float:
                 found = min(found, _cone(of.lintels, n, x, y, of.slope, 1.0))
             return max(found, roof)
     i, j = math.floor((x - of.x) / of.cell), math.floor((y - of.y) / of.cell)
-    if i < 0 or j < 0 or i >= columns - 1 or j >= rows - 1:
+    if rows == 0:
         return found
-    top, floor = math.inf, -math.inf
-    for b in range(2):
-        for a in range(2):
-            top = min(top, _nearest_cone(of, of.cuts[j + b, i + a], x, y, 1.0))
-            floor = max(floor, -_nearest_cone(of, of.fills[j + b, i + a], x, y, -1.0))
+    i, j = min(i, columns - 2), min(j, rows - 2)
+    top, floor, cut, fill = math.inf, -math.inf, NONE, NONE
+    for k in range(4):
+        b, a = j + k // 2, i + k % 2
+        if of.cuts[b, a] != cut:  # most neighbours have the same
+            cut = of.cuts[b, a]
+            top = min(top, _nearest_cone(of, cut, x, y, 1.0))
+        if of.fills[b, a] != fill:
+            fill = of.fills[b, a]
+            floor = max(floor, -_nearest_cone(of, fill, x, y, -1.0))
     return min(max(found, floor), top)
 
 
@@ -239,6 +248,9 @@ def _nearest_cone(of: Layers, number: int, x: float, y: float, sign: float) -> f
     for step in (-1, 1):
         at, last = number + step, of.rims if sign > 0.0 else len(of.segments)
         while 0 <= at < last:
+            one, two = max(at, at - step), min(at, at - step)
+            if of.segments[two, 3] != of.segments[one, 0] or of.segments[two, 4] != of.segments[one, 1]:
+                break  # another rim, or a mouth between them
             height = sign * _cone(of.segments, at, x, y, of.slope, sign)
             if height >= best:
                 break

@@ -192,7 +192,12 @@ class Ground:
         fills, floor = grading.spread(layers.segments, land, fixed, *place, slope, -1.0)
         graded = np.where(np.isnan(roofs), np.minimum(np.maximum(land, floor), top), land)
         heights = np.where(np.isnan(roads), graded, roads)
-        return cls(relief, pavement, layers._replace(heights=heights, cuts=cuts, fills=fills))
+        layers = layers._replace(heights=heights, cuts=cuts, fills=fills)
+        # on the exact cones, also where they met on the grid
+        j, i = np.nonzero(((cuts >= 0) | (fills >= 0)) & np.isnan(roads))
+        x, y = np.asarray(layers.x + cell * i), np.asarray(layers.y + cell * j)
+        heights[j, i] = grading.heights_at(layers, x, y, False)
+        return cls(relief, pavement, layers)
 
     @property
     def cell(self) -> float:

@@ -47,6 +47,7 @@ ROUNDS = 6  # of leading a curve to its end
 SCALED = 0.02  # how readily a curve is scaled rather than its straights made longer
 SHORTEST = 0.5  # m, of a straight
 KNOT = 8.0  # m between the knots of a profile
+SMOOTH = 0.05  # m of distance from the land that a change of grade of 1 is worth
 LEAST_VERTICAL = 300.0  # m, radius of crests and dips
 MARGIN = 14.0  # m from the border of the land
 
@@ -67,6 +68,7 @@ def way_between(
 
     Raises UsageError with the place and the limit if there is none: ``steepest`` as a ratio, ``radius`` in
     metres, and cuttings and fills of DEEPEST."""
+    start, end = (float(start[0]), float(start[1])), (float(end[0]), float(end[1]))
     size = np.array(relief.size)
     for name, point in (("start", start), ("end", end)):
         if not (np.array(point) > MARGIN).all() or not (np.array(point) < size - MARGIN).all():
@@ -276,19 +278,21 @@ def profile_over(
     s = np.linspace(0.0, plan.length, n)
     land = relief.at(*plan.at(s).T)
     step = plan.length / (n - 1)
-    # unknown: grades at the knots, then heights there, then distances from the land
-    no, one = csr_array((n - 1, n)), eye_array(n, format="csr")
+    # unknown: grades at the knots, heights there, distances from the land, and changes of grade
+    no, one, few = csr_array((n - 1, n)), eye_array(n, format="csr"), eye_array(n - 1, format="csr")
     before, behind = eye_array(n - 1, n, format="csr"), eye_array(n - 1, n, k=1, format="csr")
-    equal: Any = hstack([-step / 2 * (before + behind), behind - before, no])
-    change = hstack([behind - before, no, no])
-    nothing = csr_array((n, n))
-    limits: Any = vstack([change, -change, hstack([nothing, one, -one]), hstack([nothing, -one, -one])])
-    most = np.full(n - 1, step / LEAST_VERTICAL)
+    turn, nothing, none = behind - before, csr_array((n, n)), csr_array((n, n - 1))
+    equal: Any = hstack([-step / 2 * (before + behind), turn, no, csr_array((n - 1, n - 1))])
+    limits: Any = vstack([
+        hstack([turn, no, no, -few]), hstack([-turn, no, no, -few]),
+        hstack([nothing, one, -one, none]), hstack([nothing, -one, -one, none]),
+    ])  # fmt: skip
     ends = [(land[0], land[0]), *[(None, None)] * (n - 2), (land[-1], land[-1])]
     solved = linprog(
-        np.r_[np.zeros(2 * n), np.ones(n)],
-        limits, np.r_[most, most, land, -land], equal, np.zeros(n - 1),
-        bounds=[*[(-steepest, steepest)] * n, *ends, *[(0.0, deepest)] * n], method="highs",
+        np.r_[np.zeros(2 * n), np.ones(n), np.full(n - 1, SMOOTH)],
+        limits, np.r_[np.zeros(2 * n - 2), land, -land], equal, np.zeros(n - 1),
+        bounds=[*[(-steepest, steepest)] * n, *ends, *[(0.0, deepest)] * n,
+                *[(0.0, step / LEAST_VERTICAL)] * (n - 1)], method="highs",
     )  # fmt: skip
     if solved.x is None:
         return None

@@ -18,7 +18,7 @@ WATER = "#a9cbe3"
 SUN = np.array([-0.55, 0.55, 0.63])  # from the north-west, as maps have it
 RELIEF = 0.75  # share of the shading
 INTERVALS = (0.5, 1, 2, 5, 10, 20, 50, 100)  # m between contour lines
-MOST_LINES = 14
+MOST_LINES, FLAT = 14, 0.2  # contour lines; m of land without any
 CONTOUR = "#8d8468"
 CUT, FILL = "#c9a26b", "#9db38a"
 LABEL = 7  # points
@@ -53,7 +53,8 @@ def _shaded(z: Array, water: Array, side: float) -> Array:
 
 
 def _contours(axes: Axes, x: Array, y: Array, z: Array) -> None:
-    span = float(np.ptp(z))
+    if (span := float(np.ptp(z))) < FLAT:
+        return
     step = next((each for each in INTERVALS if span / each <= MOST_LINES), INTERVALS[-1])
     levels = np.arange(np.ceil(z.min() / step), z.max() / step) * step + 0.0
     if not len(levels):

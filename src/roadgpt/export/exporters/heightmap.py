@@ -43,8 +43,9 @@ def _road(number: int, road: Road, world: World) -> dict[str, Any]:
     profile = world.profile_of(road)
     s = np.linspace(0.0, road.length, max(2, round(road.length / NODES) + 1))
     paved, rims = profile.edges(s), profile.rims(s)
-    influence = np.maximum(rims.left, -rims.right) + MARGIN
-    middle = road.at(s, (paved.left + paved.right) / 2)
+    t = (paved.left + paved.right) / 2
+    influence = np.maximum(rims.left - t, t - rims.right) + MARGIN
+    middle = road.at(s, t)
     nodes = np.column_stack([middle, paved.left - paved.right])
     return {
         "id": number,
