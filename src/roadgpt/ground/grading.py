@@ -202,13 +202,6 @@ def road_at(of: Layers, x: float, y: float) -> float:
 
 
 @inlined
-def height_at(of: Layers, x: float, y: float) -> float:
-    """Returns the height of the ground at one point, roads included."""
-    road = road_at(of, x, y)
-    return land_at(of, x, y) if math.isnan(road) else road
-
-
-@inlined
 def land_at(of: Layers, x: float, y: float) -> float:
     """Returns the height of the ground at one point beside the roads."""
     rows, columns = of.cuts.shape
@@ -264,7 +257,8 @@ def heights_at(of: Layers, x: Array, y: Array, has_roads: bool) -> Array:
     """Returns the heights ``(n,)`` at n points: of the ground with its roads, or of what is beside them."""
     found = np.empty(len(x))
     for n in range(len(x)):
-        found[n] = height_at(of, x[n], y[n]) if has_roads else land_at(of, x[n], y[n])
+        road = road_at(of, x[n], y[n]) if has_roads else math.nan
+        found[n] = land_at(of, x[n], y[n]) if math.isnan(road) else road
     return found
 
 

@@ -20,8 +20,6 @@ SLOPE = 0.5  # metres up or down for each metre aside: 1:2, usual for earthworks
 STEEPER, STEEPEST = 1.5, 3.0  # than the land, of slopes on steep land; metres up for each metre aside at most
 ASIDE = 10.0  # m, where the slope of the land is measured
 FINEST, MOST_CELLS = 1.0, 1_100_000  # m, smallest cell; cells of a grid at most
-
-
 SAME = 2e-4  # m between a corner of an outline and the corner of the surface that it is
 INSIDE = 1e-4  # m inside an outline, where the height of the surface is read
 

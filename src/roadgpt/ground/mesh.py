@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay, cKDTree
 
@@ -17,6 +18,7 @@ LINTEL = 1.5  # m of land above the mouth of a tunnel that is one strip
 THIN = 0.2  # m from the mouth of a tunnel to the land above it
 WATERSIDE = 8.0  # m, side of the squares beside water
 NEAREST = 0.55  # of a square's side; a corner that is nearer to a rim is left out
+APART = 1.0  # m between the points of a rim from which that is measured
 ROUNDS = 6  # of halving those segments of rims that no triangle has as a side
 
 
@@ -95,9 +97,8 @@ def water_of(ground: Ground) -> GroundMesh:
 def _corners(ground: Ground) -> Array:
     """Returns the corners ``(n, 3)`` of squares that become smaller towards the roads, beside the roads."""
     x0, y0, x1, y1 = ground.x[0], ground.y[0], ground.x[-1], ground.y[-1]
-    rims = np.concatenate([*ground.pavement.rims, np.full((1, 3), np.inf)])[:, :2]
-    rims = rims[np.isfinite(rims[:, 0])]
-    tree = cKDTree(rims) if len(rims) else None
+    rings = [shapely.linearrings(ring[:, :2]) for ring in ground.pavement.rims]
+    tree = cKDTree(shapely.get_coordinates(shapely.segmentize(rings, APART))) if rings else None
     found, size = [], SIZES[0][0]
     columns, rows = np.arange(x0, x1, size), np.arange(y0, y1, size)
     cells = np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 2)

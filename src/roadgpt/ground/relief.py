@@ -30,7 +30,6 @@ BESIDE = 45.0  # m beside a stretch that is crossed, within which roads belong t
 DAMMED = 70.0  # m from the edge of water within which roads are not lower than it
 STRAIGHT_ON = 20.0  # m between the points by which a way is continued before its start and behind its end
 
-
 LENGTHS = {"bridge": 50.0, "tunnel": 80.0, "cutting": 60.0, "embankment": 60.0}
 """Usual lengths in metres of what words give no length."""
 CROSSED = {"valley": 60.0, "ridge": 60.0, "river": 30.0, "lake": 90.0, "coast": 60.0}
@@ -319,7 +318,9 @@ def _shaped(
     if kind == "mountain":  # the way lies on a slope
         uphill = places.side * _chosen(seed)
         lean = np.where(uphill > 0, 0.5, -0.4) * np.minimum(np.maximum(places.free - FREE, 0.0), 160.0)
-        heights = heights + _softened(lean)
+        if lean.ndim == 2:  # without steps between the sides of the way, far from it
+            lean = gaussian_filter(lean, 1.5, mode="nearest")
+        heights = heights + lean
     water = np.full(heights.shape, np.nan)
     sides = _free_sides(stretches, seed)
     for number, (stretch, side) in enumerate(zip(stretches, sides, strict=True)):
@@ -342,11 +343,6 @@ def _free_sides(stretches: Sequence[Stretch], seed: int) -> list[float]:
             turn = -said
         found.append(said or turn)
     return found
-
-
-def _softened(rise: Array) -> Array:
-    """Returns a rise without steps between the sides of the way, far from it; of single points, unchanged."""
-    return np.asarray(gaussian_filter(rise, 1.5, mode="nearest")) if rise.ndim == 2 else rise
 
 
 def _chosen(seed: int) -> float:
@@ -446,10 +442,8 @@ def _with_water(
         out = np.where(share > 0.5, out, np.maximum(out, 60.0 * (1.0 - 2.0 * share)))
     else:
         first, wide, part = {
-            "river": (26.0, 9.0, 1.0),
-            "lake": (30.0, 70.0, 0.55),
-            "coast": (32.0, 90.0, 1.0),
-        }[kind]
+            "river": (26.0, 9.0, 1.0), "lake": (30.0, 70.0, 0.55), "coast": (32.0, 90.0, 1.0),
+        }[kind]  # fmt: skip
         axis = _beside(stretch, side, way, first + wide, part)
         out = _from(axis, places) - wide + 8.0 * wave
         if kind == "coast":

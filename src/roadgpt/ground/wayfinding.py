@@ -126,16 +126,9 @@ def _meets(state: Array, parent: NDArray[np.int32], n: int, x: float, y: float) 
 
 @compiled
 def searched(
-    land: Array,
-    cell: float,
-    x0: float,
-    y0: float,
-    x1: float,
-    y1: float,
-    steepest: float,
-    tightest: float,
+    land: Array, cell: float, x0: float, y0: float, x1: float, y1: float, steepest: float, tightest: float,
     cheap: float,
-) -> tuple[Array, Array, float, tuple[float, float, float]]:
+) -> tuple[Array, Array, float, tuple[float, float, float]]:  # fmt: skip
     """Returns the curvatures (1/m) and lengths of the moves of a way and its heading at the start, no moves
     if there is none; and where the way came nearest to the end: x, y and the distance in metres."""
     wide, high = (land.shape[1] - 1) * cell, (land.shape[0] - 1) * cell
@@ -297,6 +290,5 @@ def profile_over(
     if solved.x is None:
         return None
     grades = solved.x[:n]
-    return GradeProfile(float(land[0]), tuple(s.tolist()), tuple(grades.tolist())), float(
-        solved.x[2 * n :].max()
-    )
+    profile = GradeProfile(float(land[0]), tuple(s.tolist()), tuple(grades.tolist()))
+    return profile, float(solved.x[2 * n : 3 * n].max())
