@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.ndimage import label
 
 from network.random_designs import random_design
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
@@ -114,6 +115,24 @@ def test_where_there_is_less_room_they_are_shorter_or_not_there(scene: str, leng
     if not found:
         s = np.linspace(0.5, length - 0.5, 20)
         assert above(short, world(scene), s) == pytest.approx(np.zeros(20), abs=0.01)
+
+
+@pytest.mark.parametrize("kind", ["bridge", "tunnel"])
+def test_one_that_is_asked_for_shorter_than_any_is_as_long_as_the_shortest(kind: str) -> None:
+    (found,) = crossings(road("straight"), world(f"{kind} len=3"))
+    assert (found.kind, found.end - found.start) == (kind, pytest.approx(SHORTEST))
+
+
+@pytest.mark.parametrize("name", ROADS)
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_river_beside_a_road_comes_from_one_border_and_goes_to_another(name: str, side: str) -> None:
+    ground = ground_around(road(name), world(f"river {side}"))
+    x, y = (each.ravel() for each in np.meshgrid(ground.x, ground.y))
+    wet = ~np.isnan(ground.water(x, y)).reshape(ground.heights.shape)
+    parts, _ = label(wet)
+    border = np.concatenate([parts[0], parts[1:, -1], parts[-1, -2::-1], parts[-2:0:-1, 0]])
+    into = np.flatnonzero((border > 0) & (np.roll(border, 1) == 0))
+    assert any((border[into] == part).sum() >= 2 for part in set(border[into]))
 
 
 @pytest.mark.parametrize("ground", ["", "flat", "mountain:3"])

@@ -28,7 +28,7 @@ DEEP = 3.0  # m of water
 BANK, BEACH = 0.25, 0.12  # slopes below and above the edge of water
 BESIDE = 45.0  # m beside a stretch that is crossed, within which roads belong to it
 DAMMED = 70.0  # m from the edge of water within which roads are not lower than it
-STRAIGHT_ON = 20.0  # m between the points by which a way is continued before its start and behind its end
+STRAIGHT_ON = 5.0  # m between the points by which a line is continued before its start and behind its end
 
 LENGTHS = {"bridge": 50.0, "tunnel": 80.0, "cutting": 60.0, "embankment": 60.0}
 """Usual lengths in metres of what words give no length."""
@@ -170,11 +170,6 @@ class Stretch:
         """Its length in metres."""
         return self.end - self.start
 
-    @property
-    def is_crossed(self) -> bool:
-        """Whether the way leads across it."""
-        return crosses(self.land)
-
 
 def crosses(land: Land) -> bool:
     """Returns whether a way leads across something of the landscape, and has a bridge, tunnel, cutting or
@@ -227,17 +222,21 @@ class _Places:
     def of(cls, x: Array, y: Array, way: Way) -> "_Places":
         flat, points = np.column_stack([x.ravel(), y.ravel()]), way.points[:, :2]
         free = np.asarray(cKDTree(way.others[:, :2]).query(flat)[0])
-        steps = np.arange(STRAIGHT_ON, STRAIGHT_ON * 40, STRAIGHT_ON)[:, None]
-        out, back = (
-            v / max(float(np.hypot(*v)), 1e-9) for v in (points[-1] - points[-2], points[0] - points[1])
-        )
-        line = np.concatenate([(points[0] + steps * back)[::-1], points, points[-1] + steps * out])
+        line = _continued(points)
         away, nearest = map(np.asarray, cKDTree(line).query(flat))
         ahead = np.gradient(line, axis=0)[nearest]
         off = flat - line[nearest]
         side = np.where(ahead[:, 0] * off[:, 1] - ahead[:, 1] * off[:, 0] >= 0, 1.0, -1.0)
-        share = (nearest - len(steps)).clip(0, len(points) - 1) / max(1, len(points) - 1)
+        share = (nearest - (len(line) - len(points)) // 2).clip(0, len(points) - 1) / max(1, len(points) - 1)
         return cls(x, y, *(each.reshape(x.shape) for each in (share, side, away, free)))
+
+
+def _continued(line: Array) -> Array:
+    """Returns a line ``(n, 2)`` that leads straight on before its start and behind its end."""
+    steps = np.arange(STRAIGHT_ON, STRAIGHT_ON * 160, STRAIGHT_ON)[:, None]
+    ahead = line[-1] - line[-2], line[0] - line[1]
+    out, back = (v / max(float(np.hypot(*v)), 1e-9) for v in ahead)
+    return np.concatenate([(line[0] + steps * back)[::-1], line, line[-1] + steps * out])
 
 
 def made(
@@ -388,7 +387,7 @@ def _from(line: Array, places: _Places) -> Array:
 def _rise(stretch: Stretch, side: float, places: _Places, wave: Array, way: Way) -> Array:
     """Returns by how much a valley, a ridge, a cutting or an embankment raises the land."""
     land, free = stretch.land, places.free
-    if stretch.is_crossed:
+    if crosses(stretch.land):
         return _crossing_rise(stretch, places, way)
     if land.kind == "valley":
         rise = 90.0 * np.tanh(np.maximum(free - 18.0, 0.0) / 150.0) * (1.0 + 0.35 * wave)
@@ -430,7 +429,7 @@ def _with_water(
     """Returns heights and water with a lake, a river or a coast beside the way or across it."""
     kind = stretch.land.kind
     stations = np.linspace(0.0, stretch.of, len(way.points))
-    if stretch.is_crossed:
+    if crosses(stretch.land):
         wide = min({"river": 8.0, "lake": 40.0, "coast": 40.0}[kind], max(stretch.length / 2 - 6.0, 5.0))
         along, share = _across(stretch, places, way)
         out = np.abs(along + 14.0 * wave * smooth(places.away, 20.0, 80.0)) - wide
@@ -445,7 +444,7 @@ def _with_water(
             "river": (26.0, 9.0, 1.0), "lake": (30.0, 70.0, 0.55), "coast": (32.0, 90.0, 1.0),
         }[kind]  # fmt: skip
         axis = _beside(stretch, side, way, first + wide, part)
-        out = _from(axis, places) - wide + 8.0 * wave
+        out = _from(_continued(axis) if kind == "river" else axis, places) - wide + 8.0 * wave
         if kind == "coast":
             out = np.minimum(out, _behind(way, side, places) + 8.0 * wave)
         out = np.maximum(out, first - 10.0 - places.free)

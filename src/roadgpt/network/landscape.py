@@ -65,7 +65,7 @@ def _stretches(road: Road, world: World) -> list[Stretch]:
                 is_behind = each.middle > (a + b) / 2
                 if a < high and b > low:
                     low, high = (b + MARGIN, high) if is_behind else (low, a - MARGIN)
-            long = min(each.length, high - low)
+            long = min(max(each.length, SHORTEST), high - low)
             if long >= SHORTEST:
                 middle = min(max(each.middle, low + long / 2), high - long / 2)
                 fit = (each.length - long + abs(middle - each.middle), middle, long)
