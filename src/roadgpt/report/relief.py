@@ -61,7 +61,8 @@ def _contours(axes: Axes, x: Array, y: Array, z: Array) -> None:
         return
     drawn = axes.contour(x, y, z, levels=levels, colors=CONTOUR, linewidths=0.6, zorder=0.5, alpha=0.8)
     named = {float(level): f"{level:g} m" for level in levels}
-    for label in axes.clabel(drawn, levels[::2], fontsize=LABEL, fmt=named, colors=SOFT):
+    labels = axes.clabel(drawn, levels[::2], fontsize=LABEL, fmt=named, colors=SOFT, zorder=0.6)
+    for label in labels:
         label.set(path_effects=HALO)
 
 
