@@ -50,10 +50,11 @@ SHARES: Mapping[str, Mapping[str, float]] = {
     },
     "routes": {
         "networks": 0.17,
-        "field": 0.40,
+        "field": 0.28,
+        "landscape": 0.14,
         "composed": 0.08,
-        "scene changes": 0.05,
-        "changes": 0.03,
+        "scene changes": 0.06,
+        "changes": 0.02,
         "generated routes": 0.12,
         "routes": 0.04,
         "hand": 0.04,
@@ -66,13 +67,15 @@ SHARES: Mapping[str, Mapping[str, float]] = {
 }
 """The share of each series of pairs in the training of each network. ``networks`` are hand-written routes
 with junctions, ``routes`` join these to hand-written roads, ``generated ...`` come from grammars, ``field``
-are texts of the field, and ``composed`` join those that tell only a scene to roads; ``scene changes`` are
+are texts of the field, ``landscape`` those of roads in landscapes, and ``composed`` join those that tell only a scene to roads; ``scene changes`` are
 requests that change a scene.
 """
 TOKENS_OF = {"roads": OF_ROADS, "routes": TOKENS}
 """The tokens that each network knows."""
 NETWORK = "networks/"
 """Prefix of the family names of all pairs with routes or maps."""
+OF_LANDSCAPE = f"{FIELD}f_scape"
+"""Prefix of the family names of texts of the field about landscapes."""
 KINDS_OF_FAMILIES = {"x_": "contrasts", "y_": "free"}
 """Prefixes of family names, and the series in SHARES to which pairs of these families belong. The texts of
 ``free`` were written first, and their plans were added later.
@@ -166,7 +169,7 @@ def examples(
     while True:
         name = names[weighted(shares, rng)]
         pair = next(streams[name])
-        is_of_field = name in ("field", "composed")
+        is_of_field = name in ("field", "landscape", "composed")
         if not (pair.is_change or is_of_field) and rng.random() < MENTIONS:
             pair = with_mention(pair, rng) or pair
         if pair.is_change and name != "scene changes" and rng.random() < ASIDES:
@@ -211,6 +214,8 @@ def _streams(seed: int, hand: Sequence[Pair]) -> dict[str, Iterator[Pair]]:
         joined = routes(roads, kinds["networks"], np.random.default_rng([seed, 4]))
         rng = np.random.default_rng([seed, 5])
         found["routes"] = (augmented(pair, {}, rng) for pair in joined)
+    if "landscape" in kinds:
+        found["landscape"] = varied(kinds["landscape"], np.random.default_rng([seed, 12]))
     if "field" in kinds:
         roads = [pair for kind in ("hand", "free", "networks") for pair in kinds.get(kind, ())]
         found["field"] = varied(kinds["field"], np.random.default_rng([seed, 9]))
@@ -221,6 +226,8 @@ def _streams(seed: int, hand: Sequence[Pair]) -> dict[str, Iterator[Pair]]:
 def _kind(pair: Pair) -> str:
     if pair.is_change:
         return "scene changes" if pair.family.startswith(FIELD) else "changes"
+    if pair.family.startswith(OF_LANDSCAPE):
+        return "landscape"
     if pair.family.startswith((NETWORK, FIELD)):
         return "networks" if pair.family.startswith(NETWORK) else "field"
     return KINDS_OF_FAMILIES.get(pair.family[:2], "hand")

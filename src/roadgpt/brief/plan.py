@@ -66,6 +66,7 @@ from roadgpt.brief.words import (
     Bump,
     Compass,
     Kind,
+    LandKind,
     Sharpness,
     Size,
     Slope,
@@ -261,11 +262,13 @@ AN_ACTION = _Language(
 ITSELF = _Language(
     _words(turn=Way, person=Person), {"v": "speed"}, {"lane": ("lane", _lane_number)}, of=TESTED_CAR
 )
-A_LAND = _Language(_words(lie=Lie, side=Side), {"len": "length"}, of="landscape", is_counted=True)
+A_LAND = _Language(
+    _words(lie=Lie, side=Side), {"len": "length", "away": "away"}, of="landscape", is_counted=True
+)
 SLIPPERY = "slippery"
 A_PATCH = _Language({}, {NUMBERS[field].key: field for field in Patch.model_fields}, of="slippery place")
 CLOCK = "clock"
-CONDITIONS = _words(flow=Flow, light=Light, surface=Surface)
+CONDITIONS = _words(flow=Flow, light=Light, surface=Surface, land=LandKind)
 MARK = re.compile(
     r"\b(?:(?:after|before|in) (?:turn|junction) (?:-1|[1-9]\d?)|(?:after|with) "
     rf"(?:{'|'.join(get_args(ActorKind))}) [1-9]\d? (?:{'|'.join(DOINGS)}))(?!\S)"
@@ -548,7 +551,7 @@ def scene_plan(scene: Scene) -> str:
     patches = [" ".join([SLIPPERY, *_written(patch, A_PATCH)]) for patch in scene.slippery]
     lands = [" ".join([each.kind, *_times(each.count), *_written(each, A_LAND)]) for each in scene.landscape]
     clock = f"{CLOCK} {scene.clock}" if scene.clock else ""
-    return "; ".join(filter(None, [*line, clock, scene.light, scene.surface, *patches, *lands]))
+    return "; ".join(filter(None, [*line, clock, scene.light, scene.surface, *patches, scene.land, *lands]))
 
 
 def action_plan(action: Action) -> str:

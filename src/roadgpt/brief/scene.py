@@ -10,7 +10,7 @@ from pydantic import AfterValidator, StringConstraints, model_validator
 
 from roadgpt.brief.amount import Amount, Frozen, exactly, span
 from roadgpt.brief.junctions import Side
-from roadgpt.brief.words import MOST_LANES, SURFACES
+from roadgpt.brief.words import MOST_LANES, SURFACES, LandKind
 
 ActorKind = Literal[
     "car", "van", "truck", "bus", "motorcycle", "bicycle", "adult", "child", "animal",
@@ -35,10 +35,14 @@ Landform = Literal[
     "bridge", "tunnel", "cutting", "embankment", "tree_lined",
 ]  # fmt: skip
 Lie = Literal["along", "across", "through"]
+LAND_KINDS: tuple[LandKind, ...] = get_args(LandKind)
 FLOWS: Mapping[Flow, int] = {"light": 5, "medium": 12, "dense": 25}
 """How many vehicles drive on each km of a lane."""
 USUAL_SPEEDS: Mapping[str, int] = {"adult": 5, "child": 5, "bicycle": 15, "animal": 20}
 """Speeds in km/h: those of Euro NCAP's persons (CPNA) and bicycle (CBNA); that of the animal is ours."""
+USUAL_LENGTHS: Mapping[str, float] = {"bridge": 50.0, "tunnel": 80.0, "cutting": 60.0, "embankment": 60.0}
+USUAL_AWAY: Mapping[str, float] = {"river": 26.0, "lake": 30.0, "coast": 32.0, "ridge": 85.0}
+"""Metres along the road, and from it, where words give none."""
 USUAL_BRAKING: Mapping[str, float] = {"brake": 6.0, "stop": 3.0}
 """Decelerations in m/s2 where nothing is said."""
 VEHICLES: tuple[ActorKind, ...] = ("car", "van", "truck", "bus", "motorcycle", "bicycle")
@@ -118,7 +122,7 @@ NUMBERS: Mapping[str, Number] = {
     "overlap": Number("overlap", 0, 100, "covering {} percent of the tested car's width", ALONG),
     "impact": Number("impact", -200, 300, "aimed at {} percent of the tested car's width", (*ALONG, *ACROSS)),
     "offset": Number("t", -10, 10, "{} metres left of the lane's middle", (*ALONG, "ramp", "roundabout")),
-    "away": Number("away", 0, 60, "{} metres from the tested car's path", ACROSS),
+    "away": Number("away", 0, 200, "{} metres from the tested car's path", ACROSS),
     "fog": Number("fog", 5, 1000, "fog with a visual range of {} metres"),
     "rain": Number("rain", 0.1, 200, "rain of {} mm/h"),
     "friction": Number("mu", 0.05, 2, "with a friction of {}"),
@@ -324,10 +328,14 @@ class Land(Frozen):
     side: Side | None = None
     count: Amount = exactly(1)
     length: Amount | None = None
+    away: Amount | None = None
+    """Metres from the road to the shore, or to the crest of a ridge beside it."""
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
         _given(self, self.kind)
+        if self.away and (self.kind not in USUAL_AWAY or self.lie in ("across", "through")):
+            raise ValueError(f"'{self.kind}' has no away= here; leave it out")
         if not span(self.count).lo >= 1:
             raise ValueError(f"a landscape has one {self.kind} or more, not {self.count}; leave it out")
         if self.kind in STRUCTURES and (self.lie or self.side):
@@ -337,14 +345,17 @@ class Land(Frozen):
     def __str__(self) -> str:
         if self.kind == "tree_lined":
             return "an avenue of trees"
-        is_one = self.count == exactly(1)
-        some = f"a {self.kind}" if is_one else f"{self.count} {self.kind}s"
+        article = "an" if self.kind == "embankment" else "a"
+        some = f"{article} {self.kind}" if self.count == exactly(1) else f"{self.count} {self.kind}s"
+        if self.kind == "ridge" and self.lie == "along":
+            return f"along the crest of {some}" if self.side is None else f"{some} on the {self.side}"
         lie = {"along": "along the road", "across": "to cross", "through": "to go through"}.get(
             self.lie or ""
         )
         side = f"on the {self.side}" if self.side else ""
         long = f"{self.length} metres long" if self.length else ""
-        return " ".join(filter(None, [some, lie, side, long]))
+        away = f"{self.away} metres away" if self.away else ""
+        return " ".join(filter(None, [some, lie, side, long, away]))
 
 
 class Scene(Frozen):
@@ -376,6 +387,8 @@ class Scene(Frozen):
     """Night, or a sun that is low ahead of the tested car at its start; None: day."""
     surface: Surface | None = None
     slippery: tuple[Patch, ...] = ()
+    land: LandKind | None = None
+    """How high the hills of the land are; None: as ``hills`` says."""
     landscape: tuple[Land, ...] = ()
 
     @model_validator(mode="after")
@@ -392,6 +405,17 @@ class Scene(Frozen):
                 if not same or same[0] is role or event.what not in [each.what for each in same[0].actions]:
                     raise ValueError(f"'{event}' needs another {event.of} that does '{event.what}'; name one")
         return self
+
+    @property
+    def hills(self) -> LandKind:
+        """How high the hills are: as said, or higher where there are valleys and ridges."""
+        is_high = any(each.kind in ("valley", "ridge") for each in self.landscape)
+        return self.land or ("hilly" if is_high else "rolling")
+
+    @property
+    def on_the_road(self) -> Self:
+        """The same without the land beside the road."""
+        return self.model_copy(update={"land": None, "landscape": ()})
 
     @property
     def has_flow(self) -> bool:
@@ -522,4 +546,7 @@ def parts_said(scene: Scene) -> Iterator[str]:
         yield LIGHTS[scene.light]
     if scene.surface:
         yield SURFACES[scene.surface].said
-    yield from map(str, (*scene.slippery, *scene.landscape))
+    yield from map(str, scene.slippery)
+    if scene.land:
+        yield f"{scene.land} land"
+    yield from map(str, scene.landscape)

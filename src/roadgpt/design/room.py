@@ -80,12 +80,13 @@ def need_remark(brief: Brief, found: World) -> str:
 
 def scene_remark(brief: Brief, found: World) -> str:
     """Returns a sentence on a scene that is not that of the words; empty if there is none."""
-    if brief.scene == found.scene:
+    is_of_words = World().in_scene_of(brief).scene == found.scene
+    if brief.scene == found.scene or (is_of_words and brief.scene != Scene()):
         return ""
     if brief.scene == Scene():
         friction = f"friction {found.site.friction:g}" if found.scene.surfaces else ""
         parts = (scene_text(found.scene), friction, land_remark(found.scene))
-        is_land = found.scene.model_copy(update={"landscape": ()}) == Scene()
+        is_land = found.scene.on_the_road == Scene()
         return f"{'the land' if is_land else 'on the road'}: {'; '.join(filter(None, parts))}"
     return f"the words have a scene, but --scene '{scene_plan(found.scene)}' is set and used"
 

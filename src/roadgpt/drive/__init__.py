@@ -169,7 +169,7 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None, r
     or are replayed. ``road`` is None if it is not known yet."""
     from roadgpt.road import World
 
-    asked = world.scene.model_copy(update={"landscape": ()})
+    asked = world.scene.on_the_road
     if (replays or asked != Scene()) and not getattr(simulator, "moves_others", False):
         lacks = "move others on the road yet; leave scene and tracks out"
         if not (replays or world.scene.has_others):

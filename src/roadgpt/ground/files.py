@@ -92,7 +92,7 @@ def _relief(heights: NDArray[Any], cell: float, path: Path) -> Relief:
 def _said_beside(path: Path, *names: str) -> list[float]:
     beside = path.with_suffix(".json")
     if not beside.is_file():
-        example = json.dumps({name: {"cell": 1.0, "lowest": 312.4, "step": 0.01}[name] for name in names})
+        example = json.dumps({**dict.fromkeys(names, 0.01), "cell": 1.0})
         raise UsageError(f"{path} does not say its metres; write into {beside.name} beside it: {example}")
     said = json.loads(beside.read_text(encoding="utf-8"))
     return [float(said[name]) for name in names]
@@ -196,10 +196,8 @@ def write_ground(heights: Array, cell: float, path: Path, corner: tuple[float, f
     elif suffix == ".asc":
         rows, columns = heights.shape
         head = f"ncols {columns}\nnrows {rows}\nxllcenter {corner[0]!r}\nyllcenter {corner[1]!r}\n"
-        head += f"cellsize {cell!r}\n"
-        body = io.StringIO()
-        np.savetxt(body, heights[::-1], fmt="%.3f")
-        path.write_text(head + body.getvalue(), encoding="ascii")
+        head += f"cellsize {cell!r}"
+        np.savetxt(path, heights[::-1], fmt="%.3f", header=head, comments="", encoding="ascii")
     elif suffix == ".npy":
         np.save(path, heights.astype(np.float32))
         _say(path, cell=cell)

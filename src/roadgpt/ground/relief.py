@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 from scipy.spatial import cKDTree
+from scipy.spatial.distance import cdist
 
 from roadgpt.brief.amount import span
-from roadgpt.brief.scene import Land
+from roadgpt.brief.scene import USUAL_AWAY, USUAL_LENGTHS, Land
 from roadgpt.brief.words import LandKind
 from roadgpt.compiled import compiled, inlined
 from roadgpt.geometry.curve import Array
@@ -28,16 +29,22 @@ DEEP = 3.0  # m of water
 BANK, BEACH = 0.25, 0.12  # slopes below and above the edge of water
 BESIDE = 45.0  # m beside a stretch that is crossed, within which roads belong to it
 DAMMED = 70.0  # m from the edge of water within which roads are not lower than it
+GORGE = 5.0  # m below a road, most that a river is lower beside it than elsewhere
 STRAIGHT_ON = 5.0  # m between the points by which a line is continued before its start and behind its end
 
-LENGTHS = {"bridge": 50.0, "tunnel": 80.0, "cutting": 60.0, "embankment": 60.0}
-"""Usual lengths in metres of what words give no length."""
 CROSSED = {"valley": 60.0, "ridge": 60.0, "river": 30.0, "lake": 90.0, "coast": 60.0}
 OVER: dict[str, tuple[str, ...]] = {
     "valley": ("bridge", "embankment"), "river": ("bridge",), "lake": ("bridge",), "coast": ("bridge",),
     "ridge": ("tunnel", "cutting"),
 }  # fmt: skip
 """What a way crosses something on, or in."""
+RISES = {
+    ("valley", "bridge"): (-16.0, 0.4, 20.0, 0.0), ("ridge", "tunnel"): (22.0, 0.6, 22.0, 0.0),
+    ("bridge", ""): (-11.0, 0.5, 12.0, 0.0), ("tunnel", ""): (18.0, 0.6, 22.0, 0.0),
+    ("cutting", ""): (7.0, 0.6, 25.0, 22.0), ("embankment", ""): (-6.0, 0.6, 25.0, 30.0),
+    ("valley", ""): (-9.0, 0.6, 25.0, 24.0), ("ridge", ""): (13.0, 0.6, 25.0, 26.0),
+}  # fmt: skip
+"""Rises of land that is crossed: m, share of half the length, m beyond that, and m aside until full."""
 
 
 @dataclass(frozen=True)
@@ -91,26 +98,21 @@ def cubic_at(table: Array, x0: float, y0: float, cell: float, x: float, y: float
     u = min(max((x - x0) / cell, 0.0), columns - 1.0)
     v = min(max((y - y0) / cell, 0.0), rows - 1.0)
     i, j = min(int(u), columns - 2), min(int(v), rows - 2)
-    u, v = u - i, v - j
+    across, up = _weights(u - i), _weights(v - j)
     found = 0.0
-    for b in range(-1, 3):
+    for b in range(4):
         row = 0.0
-        at = min(max(j + b, 0), rows - 1)
-        for a in range(-1, 3):
-            row += _weight(a, u) * table[at, min(max(i + a, 0), columns - 1)]
-        found += _weight(b, v) * row
+        at = min(max(j + b - 1, 0), rows - 1)
+        for a in range(4):
+            row += across[a] * table[at, min(max(i + a - 1, 0), columns - 1)]
+        found += up[b] * row
     return found
 
 
 @inlined
-def _weight(knot: int, u: float) -> float:
-    if knot == -1:
-        return -0.5 * u * (1.0 - u) * (1.0 - u)
-    if knot == 0:
-        return 1.0 + u * u * (1.5 * u - 2.5)
-    if knot == 1:
-        return u * (0.5 + u * (2.0 - 1.5 * u))
-    return -0.5 * u * u * (1.0 - u)
+def _weights(u: float) -> tuple[float, float, float, float]:
+    first, last = -0.5 * u * (1.0 - u) * (1.0 - u), -0.5 * u * u * (1.0 - u)
+    return first, 1.0 + u * u * (1.5 * u - 2.5), u * (0.5 + u * (2.0 - 1.5 * u)), last
 
 
 @compiled
@@ -134,11 +136,8 @@ class Way:
         """Returns a way from west to east through a square, for land that is made without any road."""
         rng = np.random.default_rng(seed)
         x = np.arange(0.0, size + 2.0, 2.0)
-        turns = rng.uniform(0, 2 * np.pi, 3)
-        y = size / 2 + sum(
-            size * share * np.sin(x * k * np.pi / size + turn)
-            for share, k, turn in zip((0.06, 0.04, 0.02), (1, 2, 4), turns, strict=True)
-        )
+        waves = np.sin(np.outer(x * np.pi / size, (1, 2, 4)) + rng.uniform(0, 2 * np.pi, 3))
+        y = size * (0.5 + waves @ (0.06, 0.04, 0.02))
         points = np.column_stack([x, y, np.full_like(x, height)])
         return cls(points, points)
 
@@ -174,7 +173,7 @@ class Stretch:
 def crosses(land: Land) -> bool:
     """Returns whether a way leads across something of the landscape, and has a bridge, tunnel, cutting or
     embankment there."""
-    return land.kind in LENGTHS or (land.lie in ("across", "through") and land.kind in CROSSED)
+    return land.kind in USUAL_LENGTHS or (land.lie in ("across", "through") and land.kind in CROSSED)
 
 
 def stretches(lands: Sequence[Land], length: float) -> tuple[Stretch, ...]:
@@ -184,14 +183,14 @@ def stretches(lands: Sequence[Land], length: float) -> tuple[Stretch, ...]:
     is crossed on a bridge, also where none is named. What is crossed shares the way evenly."""
     crossed: list[tuple[Land, Land | None]] = []
     for land in lands:
-        if not crosses(land):
-            continue
-        for _ in range(max(1, round(span(land.count).lo))):
-            last, own = crossed[-1] if crossed else (None, None)
-            if last is not None and own is None and land.kind in OVER.get(last.kind, ()):
-                crossed[-1] = last, land
-            elif last is not None and own is None and last.kind in OVER.get(land.kind, ()):
-                crossed[-1] = land, last
+        for _ in range(max(1, round(span(land.count).lo)) if crosses(land) else 0):
+            alone = [n for n, (each, own) in enumerate(crossed) if own is None]
+            over = next((n for n in alone if land.kind in OVER.get(crossed[n][0].kind, ())), None)
+            under = next((n for n in alone if crossed[n][0].kind in OVER.get(land.kind, ())), None)
+            if over is not None:
+                crossed[over] = crossed[over][0], land
+            elif under is not None:
+                crossed[under] = land, crossed[under][0]
             else:
                 crossed.append((land, None))
     found = [Stretch(land, 0.0, length, length) for land in lands if not crosses(land)]
@@ -199,12 +198,16 @@ def stretches(lands: Sequence[Land], length: float) -> tuple[Stretch, ...]:
         if structure is None and land.kind in ("river", "lake", "coast"):
             structure = Land(kind="bridge")
         named = structure or land
-        said = span(named.length).lo if named.length else None
-        usual = LENGTHS[named.kind] if named.kind in LENGTHS else CROSSED[named.kind]
-        long = min(said or usual, 0.7 * length / len(crossed))
+        said = span(named.length).lo if named.length else {**USUAL_LENGTHS, **CROSSED}[named.kind]
+        long = min(said, 0.7 * length / len(crossed))
         middle = (number + 0.5) * length / len(crossed)
         found.append(Stretch(land, middle - long / 2, middle + long / 2, length, structure))
     return tuple(found)
+
+
+def away_of(land: Land) -> float:
+    """Returns how far what lies beside the way is away from it, in metres."""
+    return span(land.away).lo if land.away else USUAL_AWAY[land.kind]
 
 
 @dataclass(frozen=True, eq=False)
@@ -250,9 +253,8 @@ def made(
     places = _Places.of(*np.meshgrid(x, y), way)
     base = _base(places, way, x, y)
     heights, water = _shaped(places, base, way, kind, stretches, seed)
-    beyond = np.empty((0, 3))
-    if box is None:
-        beyond = _beyond(low, high, float(base.mean()), way, kind, stretches, seed)
+    far = () if box else _beyond(low, high, float(base.mean()), way, kind, stretches, seed)
+    beyond = np.reshape(far, (-1, 3))
     return Relief(float(x[0]), float(y[0]), CELL, heights, water, beyond)
 
 
@@ -325,7 +327,7 @@ def _shaped(
     for number, (stretch, side) in enumerate(zip(stretches, sides, strict=True)):
         wave = noise(places.x, places.y, 160.0, 3, seed + 11 * number + 3)
         if stretch.land.kind in ("lake", "coast", "river"):
-            heights, water = _with_water(heights, water, stretch, side, places, base, way, wave)
+            heights, water = _with_water(heights, water, stretch, side, places, way, wave)
         else:
             heights = heights + _rise(stretch, side, places, wave, way)
     return heights, water
@@ -335,12 +337,10 @@ def _free_sides(stretches: Sequence[Stretch], seed: int) -> list[float]:
     """Returns the side of each stretch: 1 left, -1 right. Where none is said, water and ridges take turns."""
     found, turn = [], _chosen(seed)
     for stretch in stretches:
-        said = {"left": 1.0, "right": -1.0}.get(stretch.land.side or "")
-        if said is None and stretch.land.kind in ("lake", "coast", "river", "ridge"):
-            said, turn = turn, -turn
-        elif said is not None:
+        said = {"left": 1.0, "right": -1.0}.get(stretch.land.side or "", turn)
+        if stretch.land.side or stretch.land.kind in ("lake", "coast", "river", "ridge"):
             turn = -said
-        found.append(said or turn)
+        found.append(said)
     return found
 
 
@@ -395,7 +395,7 @@ def _rise(stretch: Stretch, side: float, places: _Places, wave: Array, way: Way)
     if land.kind == "ridge" and land.lie == "along" and land.side is None:
         return np.asarray(-45.0 * np.tanh(np.maximum(free - 12.0, 0.0) / 90.0))
     if land.kind == "ridge":
-        away = _from(_beside(stretch, side, way, 85.0, 1.0), places)
+        away = _from(_beside(stretch, side, way, away_of(land), 1.0), places)
         return np.asarray(
             55.0 * np.exp(-((away / 45.0) ** 2)) * (1.0 + 0.3 * wave) * smooth(free, FREE, 60.0)
         )
@@ -403,29 +403,17 @@ def _rise(stretch: Stretch, side: float, places: _Places, wave: Array, way: Way)
 
 
 def _crossing_rise(stretch: Stretch, places: _Places, way: Way) -> Array:
-    kind, free = stretch.land.kind, places.free
+    structure = stretch.structure.kind if stretch.structure else ""
+    height, inner, outer, full = RISES.get((stretch.land.kind, structure)) or RISES[stretch.land.kind, ""]
     along, share = _across(stretch, places, way)
-    half, along = max(stretch.length / 2, 12.0), np.abs(along)
-    if stretch.structure is not None and stretch.structure.kind in ("bridge", "tunnel"):
-        height = {"valley": -16.0, "ridge": 22.0}.get(kind, 0.0)
-        inner, outer = (0.4, 20.0) if kind == "valley" else (0.6, 22.0)
-        return np.asarray(height * share * (1.0 - smooth(along, half * inner, half + outer)))
-    if kind == "bridge":  # over a hollow of its own
-        return np.asarray(-11.0 * share * (1.0 - smooth(along, half * 0.5, half + 12.0)))
-    if kind == "tunnel":
-        return np.asarray(18.0 * share * (1.0 - smooth(along, half * 0.6, half + 22.0)))
-    height, full = {
-        "cutting": (7.0, 22.0), "embankment": (-6.0, 30.0), "valley": (-9.0, 24.0), "ridge": (13.0, 26.0),
-    }[kind]  # fmt: skip
-    return np.asarray(
-        height * share * (1.0 - smooth(along, half * 0.6, half + 25.0)) * smooth(free, 3.0, full)
-    )
+    half = max(stretch.length / 2, 12.0)
+    rise = height * share * (1.0 - smooth(np.abs(along), half * inner, half + outer))
+    return np.asarray(rise * smooth(places.free, 3.0, full) if full else rise)
 
 
 def _with_water(
-    heights: Array, water: Array, stretch: Stretch, side: float, places: _Places, base: Array, way: Way,
-    wave: Array,
-) -> tuple[Array, Array]:  # fmt: skip
+    heights: Array, water: Array, stretch: Stretch, side: float, places: _Places, way: Way, wave: Array
+) -> tuple[Array, Array]:
     """Returns heights and water with a lake, a river or a coast beside the way or across it."""
     kind = stretch.land.kind
     stations = np.linspace(0.0, stretch.of, len(way.points))
@@ -440,17 +428,21 @@ def _with_water(
         reach = 14.0
         out = np.where(share > 0.5, out, np.maximum(out, 60.0 * (1.0 - 2.0 * share)))
     else:
-        first, wide, part = {
-            "river": (26.0, 9.0, 1.0), "lake": (30.0, 70.0, 0.55), "coast": (32.0, 90.0, 1.0),
-        }[kind]  # fmt: skip
+        first = away_of(stretch.land)
+        wide, part = {"river": (9.0, 1.0), "lake": (70.0, 0.55), "coast": (90.0, 1.0)}[kind]
         axis = _beside(stretch, side, way, first + wide, part)
-        out = _from(_continued(axis) if kind == "river" else axis, places) - wide + 8.0 * wave
+        axis = _continued(axis) if kind == "river" else axis
+        away, nearest = cKDTree(axis).query(np.stack([places.x, places.y], axis=-1))
+        out = away - wide + 8.0 * wave
         if kind == "coast":
             out = np.minimum(out, _behind(way, side, places) + 8.0 * wave)
         out = np.maximum(out, first - 10.0 - places.free)
-        near = cKDTree(axis).query(way.others[:, :2])[0] < wide + DAMMED
-        lowest = float(way.others[near | (kind == "coast"), 2].min())
-        level = base - SHORE - 2.5 if kind == "river" else np.full(heights.shape, lowest - SHORE - 0.8)
+        near = cdist(axis, way.others[:, :2]) < wide + (45.0 if kind == "river" else DAMMED)
+        if kind == "river":
+            level = _falling(axis, near, way)[nearest]
+        else:
+            lowest = float(way.others[near.any(axis=0) | (kind == "coast"), 2].min())
+            level = np.full(heights.shape, lowest - SHORE - 0.8)
         reach = 40.0
     shore = level + np.where(out < 0.0, np.maximum(BANK * out, -DEEP), BEACH * out)
     inland = smooth(out, 6.0, reach)
@@ -458,6 +450,17 @@ def _with_water(
     dam = level + 0.5 * (1.0 - smooth(out, 40.0, 60.0))
     lowered = np.where((out > 4.0) & (out < 60.0), np.maximum(drawn, dam), drawn)
     return lowered, np.where(out < 3.0 * CELL, level, water)
+
+
+def _falling(axis: Array, near: NDArray[np.bool_], way: Way) -> Array:
+    """Returns the heights ``(n,)`` of the water along a river: below all roads near it, and lower and lower
+    on its way, unless a road beside it climbs out of reach."""
+    lowest = np.where(near, way.others[:, 2], np.inf).min(axis=1)
+    known = np.flatnonzero(np.isfinite(lowest))
+    lowest = np.interp(np.arange(len(axis)), known, lowest[known])
+    down = slice(None) if lowest[0] > lowest[-1] else slice(None, None, -1)
+    falling = np.maximum(np.minimum.accumulate(lowest[down])[down], lowest - GORGE)
+    return np.asarray(falling - SHORE - 2.5)
 
 
 def _behind(way: Way, side: float, places: _Places) -> Array:

@@ -9,7 +9,6 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from roadgpt.brief.words import LandKind
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
 from roadgpt.ground.given import GivenGround
@@ -22,7 +21,6 @@ from roadgpt.network.surface import COVER, pavement_of
 from roadgpt.road import Road, World
 
 STEP = 2.0  # m between the points of roads that land is made around
-USUAL: LandKind = "rolling"  # the kind of land in pictures where nothing is asked for
 MARGIN = 8.0  # m of road before and behind a bridge or a tunnel
 UNDER_BRIDGE = 2.0  # m from given land to a road on a bridge, at least
 SHORTEST = 12.0  # m, of a bridge or a tunnel
@@ -179,6 +177,5 @@ def _land(way: Way, world: World, parts: Sequence[Stretch]) -> Relief:
         return given.relief
     if world.site.made_ground is None and given:
         raise UsageError(f"the heights of the land '{given}' are not at hand; give its file with --ground")
-    hills: LandKind = "hilly" if any(each.land.kind in ("valley", "ridge") for each in parts) else USUAL
-    kind, seed = world.site.made_ground or (hills, 0)
+    kind, seed = world.site.made_ground or (world.scene.hills, 0)
     return made(way, kind, parts, seed)

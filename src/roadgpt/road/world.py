@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from statistics import mean
-from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
@@ -29,9 +29,9 @@ from roadgpt.brief.amount import Amount, Frozen
 from roadgpt.brief.beside import friction_of
 from roadgpt.brief.model import CentreLine
 from roadgpt.brief.plan import read_scene, scene_plan
-from roadgpt.brief.scene import Scene, with_lands
+from roadgpt.brief.scene import LAND_KINDS, Scene, with_lands
 from roadgpt.brief.visibility import weather_drawn
-from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, USUAL_MAP, LandKind
+from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, USUAL_MAP
 from roadgpt.errors import BriefError, UsageError
 from roadgpt.ground.given import BESIDE, NAME, GivenGround
 
@@ -52,7 +52,6 @@ Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 FRICTIONS = (0.0, 2.0)  # the first is not reached
 SPEEDS = (5 / 3.6, 300 / 3.6)  # m/s, of speed limits in options and files
-LAND_KINDS: tuple[LandKind, ...] = get_args(LandKind)
 LANE_WIDTHS = (2.0, 10.0)  # m, of the driven lane in options and files
 STEEPEST = 0.12  # ratio, largest superelevation of bends
 OWN = {"lanes": "1+1", "lane_width_end": None, "centre_line": None, "bank": "none"}
@@ -413,13 +412,11 @@ class World(BaseModel):
         is empty."""
         if brief is None:
             return self
-        changes: dict[str, Any] = {}
         scene = with_lands(brief.scene, brief.beside)
-        if scene != Scene() and "scene" not in self.model_fields_set:
-            changes["scene"] = scene
-        if brief.surroundings == "mountain" and "ground" not in self.site.model_fields_set:
-            changes["ground"] = "mountain"
-        return self.changed(**changes) if changes else self
+        if brief.surroundings == "mountain" and scene.land is None:
+            scene = scene.model_copy(update={"land": "mountain"})
+        is_given = scene == Scene() or "scene" in self.model_fields_set
+        return self if is_given else self.changed(scene=scene)
 
     def in_weather_of(self, seed: int) -> "World":
         """Returns the World with the fog and rain that a drive with this seed draws from their ranges."""
@@ -462,7 +459,7 @@ class World(BaseModel):
     @property
     def has_ground(self) -> bool:
         """Whether a car that leaves the road drives on over land: where land was asked for."""
-        return bool(self.site.ground or self.scene.landscape)
+        return bool(self.site.ground or self.scene.land or self.scene.landscape)
 
     @property
     def first_speed(self) -> float:

@@ -57,15 +57,19 @@ SINGLE: Mapping[str, tuple[str, ...]] = {
     "ego": ("speed", "lane", "turn", "person"),
     "traffic": ("flow", "oncoming"),
     "oncoming": ("oncoming",),
+    "land": ("land",),
     "parked": ("parked",),
     **{name: (name,) for name in WEATHER},
     **{name: (field,) for name, (field, _) in CONDITIONS.items() if field != "flow"},
     "scene": tuple(Scene.model_fields),
 }
 """The other parts of a scene, each with the fields that make it."""
-OF_SINGLE = {"ego": "speed", "traffic": "flow", "oncoming": "oncoming", **{name: name for name in WEATHER}}
+OF_SINGLE = {
+    "ego": "speed", "traffic": "flow", "oncoming": "oncoming", "land": "land",
+    **{name: name for name in WEATHER},
+}  # fmt: skip
 """The field of the one number or level that such a part has."""
-LEVELS = ("flow", "oncoming")
+LEVELS = ("flow", "oncoming", "land")
 KEYS = {number.key: field for field, number in OF_SCENES.items()}
 Valued = TypeVar("Valued", bound=Value)
 
@@ -574,7 +578,8 @@ class SceneChangeParser(ChangeParser):
         change = self._valued(replace(change, key=key))
         if key in LEVELS and (not change.more or change.by is not None):
             raise EditError(
-                f"'{self.text[:60]}' is no traffic; write none, light, medium, dense, more or less"
+                f"'{self.text[:60]}' is no level of {name}; write more or less, or add for"
+                f" example {'hilly' if key == 'land' else 'dense'}"
             )
         return change
 

@@ -12,10 +12,13 @@ from roadgpt.brief.change.plan import LEVELS, LISTS, OF_SINGLE, SINGLE
 from roadgpt.brief.change.request import SceneChange, Things, Value
 from roadgpt.brief.scene import (
     FLOWS,
+    LAND_KINDS,
     LIGHTS,
     NUMBERS,
     ONE_OF,
+    USUAL_AWAY,
     USUAL_BRAKING,
+    USUAL_LENGTHS,
     USUAL_SPEEDS,
     Action,
     Mark,
@@ -27,7 +30,9 @@ from roadgpt.brief.words import SURFACES
 from roadgpt.errors import EditError, UnclearPlaceError
 
 HALF_AGAIN = 0.5  # 'more' is half as much again, and 'less' undoes that
-USUAL = Scene()
+EMPTY = Scene()
+USUAL = {"speed": USUAL_SPEEDS, "decel": USUAL_BRAKING, "length": USUAL_LENGTHS, "away": USUAL_AWAY}
+"""What numbers are where a scene says none, by the kind of what has them."""
 CALLED = {
     "ego": "start of the tested car",
     "parked": "row of parked cars",
@@ -88,7 +93,7 @@ class _Stage:
         left = {name: tuple(filter(None, those)) for name, those in self.lists.items()}
         left["actors"] = tuple(map(self._renumbered, left["actors"]))
         try:
-            return Scene.model_validate(USUAL.model_copy(update=self.fields | left).model_dump())
+            return Scene.model_validate(EMPTY.model_copy(update=self.fields | left).model_dump())
         except ValidationError as error:
             problem = error.errors()[0]["msg"].removeprefix("Value error, ")
             raise EditError(f"the changed scene is not possible: {problem}") from error
@@ -99,7 +104,7 @@ class _Stage:
                 self.lists[name] += value
             elif name == "parked":
                 self.fields[name] += value
-            elif value != getattr(USUAL, name):
+            elif value != getattr(EMPTY, name):
                 self._once(f"the {name} of the scene", name)
                 self.fields[name] = value
         self.named += part.actors
@@ -111,7 +116,7 @@ class _Stage:
 
     def _clear(self, target: Things) -> None:
         """Removes a part of which a scene has one."""
-        has = {name: value for name, value in self.before if value != getattr(USUAL, name)}
+        has = {name: value for name, value in self.before if value != getattr(EMPTY, name)}
         is_other = target.name in (*LIGHTS, *SURFACES) and target.name not in has.values()
         names = [name for name in SINGLE[target.name] if name in has and not is_other]
         if not names or (target.side and target.side not in self.before.parked):
@@ -122,13 +127,14 @@ class _Stage:
             elif target.side:
                 self.fields[name] = tuple(side for side in self.fields[name] if side != target.side)
             else:
-                self.fields[name] = getattr(USUAL, name)
+                self.fields[name] = getattr(EMPTY, name)
 
     def _change_single(self, change: SceneChange, name: str) -> None:
         said, now = f"the {name} of the scene", self.fields[name]
         self._once(said, name, change.bound)
         if name in LEVELS:
-            self.fields[name] = _level(change, name, now or self.fields["flow"])
+            usual = self.before.hills if name == "land" else self.fields["flow"]
+            self.fields[name] = _level(change, name, now or usual)
             return
         if now is None and name != "speed":
             raise EditError(f"there is no {name} in the scene that could change; ask for {name} first")
@@ -166,7 +172,8 @@ class _Stage:
             self._once(f"{what} of '{thing}'", name, place, change.what, change.doing, of_one, change.bound)
         if change.doing is None:
             if change.what == "number":
-                return _with_number(thing, change, USUAL_SPEEDS.get(getattr(thing, "kind", "")), str(thing))
+                usual = USUAL[change.key].get(getattr(thing, "kind", "")) if change.key in USUAL else None
+                return _with_number(thing, change, usual, str(thing))
             if change.what == "count":
                 return thing.model_copy(update={"count": _amount(change, thing.count, str(thing))})
             if change.what == "add":
@@ -214,7 +221,7 @@ def _with_number(thing: Any, change: SceneChange, usual: float | None, said: str
     rivals = {each for fields in ONE_OF if key in fields for each in fields if each != key}
     given = [each for each in rivals if getattr(thing, each, None) is not None]
     now: Amount | None = getattr(thing, key)
-    if now is None and usual and key in ("speed", "decel") and not given:
+    if now is None and usual and not given:
         now = exactly(usual)
     if now is None and change.to is None:
         name = NUMBERS[key].key
@@ -249,13 +256,15 @@ def _amount(change: Value, now: Amount | None, said: str) -> Amount:
 
 
 def _level(change: Value, name: str, now: str | None) -> str | None:
-    """Returns how dense traffic is, one level further, or two where it is to be much more or less."""
-    levels = (None if name == "flow" else "none", *FLOWS)
-    place = levels.index(now) if now in FLOWS else 0
+    """Returns how dense traffic is, or how high the hills are, one level further; two if much more or less is
+    wanted."""
+    levels = LAND_KINDS if name == "land" else (None if name == "flow" else "none", *FLOWS)
+    place = levels.index(now) if now in levels else 0
     further = place + change.more * (2 if change.dose > 1 else 1)
     new = levels[min(max(further, 0), len(levels) - 1)]
     if new == levels[place]:
-        raise EditError(f"there is {now or 'no'} traffic already, and no level beyond; leave that out")
+        said = f"{now} land" if name == "land" else f"{now or 'no'} traffic"
+        raise EditError(f"there is {said} already, and no level beyond; leave that out")
     return new
 
 

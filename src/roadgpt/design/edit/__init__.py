@@ -629,6 +629,9 @@ def _edited(design: Design, request: EditRequest, world: World, geometry: Geomet
 def _restaged(world: World, changes: Sequence[SceneChange]) -> tuple[World, list[str]]:
     """Returns the World with a changed scene, and sentences on it; none if it stays as it is."""
     before, friction = world.scene, world.site.friction
+    kind, seed = world.site.made_ground or (None, 0)
+    if kind:
+        before = before.model_copy(update={"land": kind})
     scene = changed_scene(before, changes, KMH * world.limits.speed_limit)
     if scene == before:
         return world, []
@@ -644,6 +647,9 @@ def _restaged(world: World, changes: Sequence[SceneChange]) -> tuple[World, list
         told += [f"friction {friction:g} -> {wanted:g}"] if friction != wanted else []
     elif own != wanted:
         told.append(f"friction stays {friction:g}, which was not set by the scene")
+    if kind:
+        world = world.changed(ground=f"{scene.land}:{seed}" if scene.land else "")
+        scene = scene.model_copy(update={"land": None})
     return world.changed(scene=scene), told
 
 

@@ -190,7 +190,8 @@ def _mark(is_of_action: bool = False) -> Symbol:
 def _land(numbers: Numbers) -> Symbol:
     count, length = numbers.keyed("x"), numbers.keyed("len=")
     structures = sequel(one_of(*STRUCTURES), in_order(count, length))
-    lies = in_order(count, one_of(*get_args(Lie)), one_of(*SIDES), length)
+    away = numbers.keyed("away=")
+    lies = in_order(count, one_of(*get_args(Lie)), one_of(*SIDES), length, away)
     forms = [form for form in get_args(Landform) if form not in STRUCTURES]
     return any_of(structures, sequel(one_of(*forms), lies))
 
@@ -218,6 +219,7 @@ def _scene_change(numbers: Numbers) -> Symbol:
         ("slippery",): (WHICH, any_of(*_of_thing(Patch, numbers))),
         (TESTED_CAR,): ((), any_of(sequel(one_of("v="), _value("v=", numbers)), one_of("remove"))),
         ("traffic", "oncoming"): ((), any_of(one_of("remove"), levels, *MORE_OR_LESS)),
+        ("land",): ((), any_of(*MORE_OR_LESS)),
         ("fog",): ((), any_of(one_of("remove"), _value("fog=", numbers))),
         ("rain",): ((), any_of(one_of("remove"), _value("rain=", numbers))),
         ("parked",): ([one_of(*SIDES)], one_of("remove")),

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any, get_args
 
+from roadgpt.brief.amount import exactly, span
 from roadgpt.brief.feasible import is_possible
 from roadgpt.brief.languages import TABLE, pattern_of, word_set
 from roadgpt.brief.model import Brief
@@ -15,7 +16,7 @@ from roadgpt.brief.readers.model.clock import told_time
 from roadgpt.brief.readers.model.number_words import plain
 from roadgpt.brief.readers.model.slots import NumberSlot, SlottedText
 from roadgpt.brief.readers.model.vocabulary import WISHES, plan_of
-from roadgpt.brief.scene import Land, Scene
+from roadgpt.brief.scene import STRUCTURES, Land, Scene
 from roadgpt.brief.words import Compass
 
 NAMES: Mapping[str, frozenset[str]] = {
@@ -104,6 +105,9 @@ def things_in(brief: Brief) -> frozenset[str]:
 
 SMALL_HOURS = ("22", "23", "00", "01", "02", "03", "04")
 DENIED = word_set("denying")
+LANDS = {kind: pattern_of(kind, "lands") for kind in ("rolling", "hilly", "flat")}
+"""The words for kinds of land; mountains are the surroundings of a road."""
+LEAST = 10.0  # m, length of a structure that words can mean
 ON_BOTH_SIDES = pattern_of("both_sides", flags=re.IGNORECASE)
 
 
@@ -144,7 +148,10 @@ def with_told(brief: Brief, words: str) -> Brief:
     scene = brief.scene
     if scene == Scene():
         return brief
-    fields: dict[str, Any] = {}
+    fields: dict[str, Any] = {"landscape": _landscape(brief)}
+    if scene.landscape and scene.land is None:
+        kinds = (kind for kind, pattern in LANDS.items() if pattern.search(plain(words)))
+        fields["land"] = next(kinds, None)
     if len(scene.parked) == 1 and ON_BOTH_SIDES.search(words):
         fields["parked"] = ("left", "right")
     clock, said = told_time(words), ["", *map(plain, re.findall(r"\w+", words))]
@@ -155,7 +162,22 @@ def with_told(brief: Brief, words: str) -> Brief:
         fields["light"] = "night"
     named = NAMES["night"] if "light" in fields else ()
     unused = tuple(word for word in brief.unused if plain(word) not in named)
-    return brief.model_copy(update={"scene": scene.model_copy(update=fields), "unused": unused})
+    changes = {"scene": scene.model_copy(update=fields), "unused": unused}
+    if fields.get("land") in ("rolling", "hilly") and brief.slope:
+        changes["hills"] = None  # the land is hilly, and the road has a slope of its own
+    return brief.model_copy(update=changes)
+
+
+def _landscape(brief: Brief) -> tuple[Land, ...]:
+    """Returns the landscape of a Brief. What a network says twice stands once, and a structure has no length
+    that is that of the road, or none of any structure."""
+    found, whole = list[Land](), brief.length
+    for land in brief.scene.landscape:
+        is_own = land.length is not None and land.length != whole and span(land.length).hi >= LEAST
+        land = land if is_own else land.model_copy(update={"length": None})
+        if land not in found or (land.kind in STRUCTURES and land.count == exactly(1)):
+            found.append(land)
+    return tuple(found)
 
 
 def with_origin(brief: Brief, text: SlottedText) -> Brief:
