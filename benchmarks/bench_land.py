@@ -18,6 +18,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from network.random_maps import map_route
 from roadgpt import draft, read
+from roadgpt.check.rules import not_in_land
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.export import save
 from roadgpt.geometry import Piece, PieceCurve
@@ -87,9 +88,8 @@ class Caster:
             pairs = ((b, c), (c, a), (a, b))
             w = np.stack([(q[:, 0] - x) * (r[:, 1] - y) - (q[:, 1] - y) * (r[:, 0] - x) for q, r in pairs])
             whole = w.sum(axis=0)
-            with np.errstate(all="ignore"):
-                share = w / whole
-            inside = (share.min(axis=0) >= -slack) & (np.abs(whole) > 1e-12)
+            share = np.where(np.abs(whole) > 1e-12, w / np.where(whole == 0, 1.0, whole), -1.0)
+            inside = share.min(axis=0) >= -slack
             z = np.where(
                 inside, (share * np.stack([a[:, 2], b[:, 2], c[:, 2]])[:, None]).sum(axis=0), -np.inf
             )
@@ -137,7 +137,7 @@ def looked_at(road: Road, world: World, rng: np.random.Generator) -> dict[str, f
 
 
 def laid(count: int, networks: int) -> None:
-    rng, total, times, done = np.random.default_rng(1), {}, [], 0
+    rng, total, times, done, refused = np.random.default_rng(1), {}, [], 0, 0
     for number in range(count + networks):
         kind, scene = KINDS[number % 4], SCENES[number % len(SCENES)]
         world = World().changed(ground=f"{kind}:{number % 100}", scene=scene)
@@ -149,14 +149,18 @@ def laid(count: int, networks: int) -> None:
                 continue
         else:
             road = map_route(number - count)
+        road = world.lay(road)
+        if not_in_land.inspect(network_of(road, world), road, None, world):
+            refused += 1
+            continue
         start = time.perf_counter()
-        told = looked_at(world.lay(road), world, rng)
+        told = looked_at(road, world, rng)
         times.append(time.perf_counter() - start)
         done += 1
         total = {name: total.get(name, 0.0) + value for name, value in told.items()}
         if told["buried"] or told["gap"] or told["seams"]:
             print(f"{number} {kind} {scene}: {told}")
-    print(f"{done} roads and networks: {total}; {np.median(times):.2f} s each")
+    print(f"{done} roads and networks: {total}; {np.median(times):.2f} s each; {refused} refused by the rule")
 
 
 def timed(count: int = 40) -> None:

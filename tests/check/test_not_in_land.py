@@ -166,3 +166,17 @@ def test_the_strict_rules_hold_it_and_say_it_with_the_others() -> None:
     assert "not_in_land" not in {each.rule for each in inspect(road, None, World())}
     level = hairpin(40.0, 0.0), world
     assert inspect(level[0], None, level[1]) == ()
+
+
+@pytest.mark.parametrize(("apart", "rise"), [(12.0, 4.0), (13.5, 2.0), (12.0, -4.0), (12.0, 0.0), (12.0, 0.2)])
+def test_legs_whose_verges_overlap_are_told_by_their_step(apart: float, rise: float) -> None:
+    """The rims lie 7 m from each line, so those of legs up to 14 m apart overlap."""
+    told = found(hairpin(apart, rise), World().changed(ground="flat"))
+    if abs(rise) < 0.3:
+        assert told == ()
+        return
+    (finding,) = told
+    assert finding.sentence.endswith(f"two parts of the road meet with a step of {abs(rise):.1f} m")
+    assert finding.x is not None
+    assert finding.y is not None
+    assert 100.0 + apart - RIM - 0.1 <= finding.y <= 100.0 + RIM + 0.1

@@ -53,9 +53,10 @@ def mesh_of(ground: Ground, to_horizon: bool = True) -> GroundMesh:
         rims = np.concatenate(rings) if rings else np.empty((0, 3))
         points = np.concatenate([rims, corners, far])
         triangles = _triangles(points, ground)
+        halved = _with_missing_halved(rings, triangles)
         for portal in portals:  # which is open
             triangles = triangles[~_is_before(points, portal, 2 * THIN)[triangles].all(axis=1)]
-        if not (halved := _with_missing_halved(rings, triangles)):
+        if not halved:
             break
         rings = halved
     return GroundMesh(points, triangles)

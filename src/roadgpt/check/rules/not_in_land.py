@@ -1,5 +1,5 @@
-"""Requires a road to have room in its land: for every bridge and tunnel that is asked for, and without walls
-that are higher than 15 m.
+"""Requires a road to have room in its land: for every bridge and tunnel that is asked for, without walls that
+are higher than 15 m, and without a part whose verge lies over another part.
 
 A wall stands where two parts of the roads have no room for slopes between them. Without land, or on flat land
 that nobody asked for, nothing is checked."""
@@ -9,15 +9,19 @@ import numpy as np
 from roadgpt.brief.amount import span
 from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding
+from roadgpt.ground.ground import Ground
 from roadgpt.network import Network
 from roadgpt.road import Road, World
 
 HIGHEST = 15.0  # m, of a wall; higher ones are dams (ICOLD counts from 15 m on)
+STEP = 0.3  # m between verges that lie over each other, at most
+INSIDE = 0.99  # of the way from the line of a road to its rims
 BESIDE = 0.1  # m beside a rim, where the ground is looked at
 
 
 def inspect(network: Network, route: Road | None, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Reports bridges and tunnels without room, and the highest wall if it is too high."""
+    """Reports bridges and tunnels without room, the highest wall if it is too high, and the
+    highest step between verges."""
     if route is None or not world.has_ground:
         return ()
     from roadgpt.network.landscape import crossings, ground_around
@@ -28,13 +32,15 @@ def inspect(network: Network, route: Road | None, brief: Brief | None, world: Wo
         if built.count(kind) < asked:
             sentence = f"asked for {asked} {kind}{'s' * (asked > 1)}, has room for {built.count(kind)}"
             found.append(Finding("not_in_land", sentence))
-    rims = ground_around(route, world).pavement.segments
+    ground = ground_around(route, world)
+    found += _above_another(network, ground)
+    rims = ground.pavement.segments
     if len(rims):
         ahead = rims[:, 3:5] - rims[:, :2]
         ahead /= np.maximum(np.hypot(*ahead.T), 1e-9)[:, None]
         middle = (rims[:, :3] + rims[:, 3:]) / 2
         x, y = middle[:, :2].T + BESIDE * np.stack([ahead[:, 1], -ahead[:, 0]])
-        wall = np.abs(ground_around(route, world).beside(x, y) - middle[:, 2])
+        wall = np.abs(ground.beside(x, y) - middle[:, 2])
         at = int(wall.argmax())
         if wall[at] > HIGHEST:
             sentence = (
@@ -43,3 +49,21 @@ def inspect(network: Network, route: Road | None, brief: Brief | None, world: Wo
             )
             found.append(Finding("not_in_land", sentence, None, float(x[at]), float(y[at])))
     return tuple(found)
+
+
+def _above_another(network: Network, ground: Ground) -> list[Finding]:
+    """Reports where the verge of one part of the roads lies farthest above or below another part."""
+    worst, place = STEP, None
+    for member in network.roads_outside:
+        s = np.linspace(0.0, member.road.length, max(2, round(member.road.length)))
+        for each in ground.pavement.spans:
+            s = s[(each.road != member.id) | (s < each.start) | (s > each.end)]
+        for rim in member.profile.rims(s):
+            points = member.road.at(s, rim * INSIDE)
+            steps = np.nan_to_num(np.abs(ground.road(*points[:, :2].T) - points[:, 2]))
+            if len(s) and (at := int(steps.argmax())) >= 0 and steps[at] > worst:
+                worst, place = float(steps[at]), points[at]
+    if place is None:
+        return []
+    sentence = f"at ({place[0]:.0f}, {place[1]:.0f}) two parts of the road meet with a step of {worst:.1f} m"
+    return [Finding("not_in_land", sentence, None, float(place[0]), float(place[1]))]
