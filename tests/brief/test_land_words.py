@@ -2,10 +2,11 @@
 
 import pytest
 
-from roadgpt.brief.amount import exactly
+from roadgpt.brief.amount import amount_text, exactly
 from roadgpt.brief.land_words import land_in
-from roadgpt.brief.plan import read_scene
-from roadgpt.brief.scene import Land
+from roadgpt.brief.plan import read_plan, read_scene, scene_plan
+from roadgpt.brief.readers.model.scenes import with_told
+from roadgpt.brief.scene import Land, Scene
 
 
 def lands(words: str) -> list[tuple[object, ...]]:
@@ -89,3 +90,60 @@ def test_both_ridges_of_a_valley_are_plain_ridges() -> None:
     _, left, right = land_in("a valley between two ridges").lands
     assert left == Land(kind="ridge", side="left")
     assert right == Land(kind="ridge", side="right")
+
+
+@pytest.mark.parametrize(
+    ("words", "land"),
+    [
+        ("hilly terrain, a lake on the left", "hilly"),
+        ("a lake among the hills", "hilly"),
+        ("gently rolling country beside a lake", "rolling"),
+        ("flat farmland and a lake", "flat"),
+        ("in the plain, along a lake", "flat"),
+        ("on a plain, along a lake", "flat"),
+        ("a lake in a plain.", "flat"),
+        ("hügeliges Land an einem See", "hilly"),
+        ("wellige Landschaft mit See", "rolling"),
+        ("un terrain vallonné près d'un lac", "hilly"),
+        ("un lago en la llanura", "flat"),
+        ("colline dolci e un lago", "hilly"),
+        ("a lake, not hilly at all", None),
+        ("a plain road past a lake", None),
+    ],
+)
+def test_words_for_the_kind_of_land_are_taken_beside_a_landscape(words: str, land: str | None) -> None:
+    told = with_told(read_plan("turn x2 && lake along"), words)
+    assert told.scene.land == land
+    assert with_told(read_plan("turn x2 && hilly; lake along"), words).scene.land == "hilly"
+    assert with_told(read_plan("turn x2"), words).scene == Scene()
+
+
+@pytest.mark.parametrize(
+    ("plan", "words", "kept"),
+    [
+        ("hairpin x2 | down hills=3.. && forest through", "a descent through hilly wooded land", None),
+        ("| flat hills=3.. && forest through", "keep the road level in rolling woods", None),
+        ("hairpin x2 | hills=3.. && forest through", "a hilly road through a forest", "3.."),
+        ("| down hills=3.. && forest through", "downhill with three brows, a forest", "3.."),
+    ],
+)
+def test_hills_of_the_land_are_none_of_a_road_with_a_slope_of_its_own(
+    plan: str, words: str, kept: str | None
+) -> None:
+    told = with_told(read_plan(plan), words)
+    assert (told.hills and amount_text(told.hills)) == kept
+
+
+@pytest.mark.parametrize(
+    ("plan", "kept"),
+    [
+        ("tunnel x2; tunnel x2", "tunnel x2"),
+        ("tunnel; bridge; tunnel", "tunnel; bridge; tunnel"),
+        ("forest through; lake left; forest through", "forest through; lake left"),
+        ("bridge len=900", "bridge"),  # as long as the road
+        ("bridge len=90; tunnel len=3", "bridge len=90; tunnel"),
+    ],
+)
+def test_what_a_network_says_twice_or_with_the_length_of_the_road_is_taken_once(plan: str, kept: str) -> None:
+    told = with_told(read_plan(f"turn x3 | len=900 && {plan}"), "a road of 900 m")
+    assert scene_plan(told.scene) == kept

@@ -56,6 +56,7 @@ PARTS = (
     | st.builds(lambda land: {"landscape": (land,)}, LANDS)
     | st.sampled_from([{"light": "night"}, {"flow": "dense"}, {"oncoming": "none"}, {"surface": "ice"}])
     | st.sampled_from([{"parked": ("left",)}, {"lane": 2}, {"turn": "left"}, {"person": "robot"}])
+    | st.sampled_from([{"land": "hilly"}, {"land": "flat"}])
 ).map(lambda fields: Scene().model_copy(update=fields))
 
 
@@ -88,12 +89,15 @@ CHANGES = (
     | st.builds(
         SceneChange,
         st.just("remove"),
-        ACTORS | LANDSCAPE | PLACES | single("ego", "fog", "traffic", "oncoming", "parked", "night", "scene"),
+        ACTORS
+        | LANDSCAPE
+        | PLACES
+        | single("ego", "fog", "traffic", "oncoming", "parked", "night", "land", "hilly", "scene"),
     )
     | st.builds(SceneChange, st.just("remove"), ACTORS, doing=st.sampled_from(get_args(What)))
     | st.builds(lambda target, n: SceneChange("count", target, **n), ACTORS | LANDSCAPE, COUNTS)
     | numbers_of(ACTORS, *OF_ACTORS)
-    | numbers_of(LANDSCAPE, "length")
+    | numbers_of(LANDSCAPE, "length", "away")
     | numbers_of(PLACES, *(name for name in NUMBERS if name in Patch.model_fields))
     | numbers_of(single("ego"), "speed")
     | numbers_of(single("fog"), "fog")
@@ -101,6 +105,7 @@ CHANGES = (
     | st.builds(
         SceneChange, st.just("number"), single("traffic"), key=st.just("flow"), more=WAYS, dose=st.just(1.8)
     )
+    | st.builds(SceneChange, st.just("number"), single("land"), key=st.just("land"), more=WAYS)
     | DEEDS
 )
 
@@ -155,6 +160,10 @@ BEFORE = (
         ("tunnel: len less; bridge: x3", "len=90; bridge", "len=60; bridge x3"),
         ("landscape all: remove; add bridge len=60", "tunnel len=90; bridge", "bridge len=60"),
         ("ego: v +30; add ego lane=1", "ego v=50", "ego v=80 lane=1"),
+        ("bridge: len more", "bridge", "bridge len=75"),  # 50 m is a usual bridge
+        ("land: more", "night; tunnel", "night; hilly; tunnel"),  # rolling where nothing is said
+        ("land: much less", "night; tunnel", "night; flat; tunnel"),
+        ("add mountain", "night; tunnel", "night; mountain; tunnel"),
         ("scene: remove; add light", BEFORE, "light"),
     ],
 )
@@ -198,6 +207,8 @@ def test_who_waits_for_somebody_waits_for_the_same_one_afterwards() -> None:
         ("low_sun: remove", "no low sun"),
         ("parked: remove", "no row of parked cars"),
         ("traffic: much more; traffic: more", "asked for twice"),
+        ("land: =3", "no level of land; write more or less, or add for example hilly"),
+        ("bridge: away =30", "'bridge' has no away= here"),
         ("truck: colour blue", "'colour' is not expected"),
         ("lorry: remove", "'lorry' is not expected"),
         ("truck: gap =turn 1", "'turn' is not expected"),
@@ -228,3 +239,35 @@ def test_a_change_of_the_scene_alone_keeps_the_road_and_is_said() -> None:
     assert both.design == edit(road, read_change_plan("turn 2: radius x0.9"), world).design != road
     with pytest.raises(IdleEditError, match="so already"):
         edit(road, read_change_plan("&& truck: brake =4"), world)
+
+
+@pytest.mark.parametrize(
+    ("scene", "line", "after"),
+    [
+        ("hilly; lake left", "land: more", "mountain; lake left"),
+        ("valley along", "land: more", "mountain; valley along"),  # hilly where there are valleys
+        ("lake left", "lake: away more", "lake left away=45"),  # 30 m is usual
+        ("lake left away=60", "lake: away less", "lake left away=40"),
+        ("river along right; ridge left", "ridge: away +15", "river along right; ridge left away=100"),
+        ("mountain", "hilly: remove", ""),
+        ("mountain", "land: remove", ""),
+        ("mountain", "land: more", ""),
+    ],
+)
+def test_land_changes_by_levels_and_metres(scene: str, line: str, after: str) -> None:
+    def changed() -> str:
+        return scene_plan(changed_scene(read_scene(scene), read_change_plan(f"&& {line}").scene, 90.0))
+
+    if after or line == "land: remove":
+        assert changed() == after
+    else:  # there is no hilly land, and nothing higher than mountains
+        with pytest.raises(EditError, match=r"no hilly|mountain land already"):
+            changed()
+
+
+def test_the_land_of_an_option_changes_and_keeps_its_seed() -> None:
+    road, world = roads()["r01"], World().changed(ground="hilly:7", scene="lake left")
+    made = edit(road, read_change_plan("&& land: less"), world)
+    assert made.world == World().changed(ground="rolling:7", scene="lake left")
+    assert any("hilly land" in said and "rolling land" in said for said in made.changes)
+    assert edit(road, read_change_plan("&& lake: remove"), world).world.site.ground == "hilly:7"

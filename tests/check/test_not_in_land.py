@@ -168,7 +168,9 @@ def test_the_strict_rules_hold_it_and_say_it_with_the_others() -> None:
     assert inspect(level[0], None, level[1]) == ()
 
 
-@pytest.mark.parametrize(("apart", "rise"), [(12.0, 4.0), (13.5, 2.0), (12.0, -4.0), (12.0, 0.0), (12.0, 0.2)])
+@pytest.mark.parametrize(
+    ("apart", "rise"), [(12.0, 4.0), (13.5, 2.0), (12.0, -4.0), (12.0, 0.0), (12.0, 0.2)]
+)
 def test_legs_whose_verges_overlap_are_told_by_their_step(apart: float, rise: float) -> None:
     """The rims lie 7 m from each line, so those of legs up to 14 m apart overlap."""
     told = found(hairpin(apart, rise), World().changed(ground="flat"))

@@ -14,8 +14,9 @@ from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.geometry.curve import Array
 from roadgpt.ground.files import named
 from roadgpt.ground.relief import Relief
-from roadgpt.ground.sight import FARTHEST, GRAZING, OPEN, Horizon, horizon_of, is_behind_land
-from roadgpt.network.landscape import crossings, ground_around, horizon_around, sight_along
+from roadgpt.ground.sight import GRAZING, OPEN, Horizon, horizon_of, is_behind_land
+from roadgpt.network.landscape import crossings, ground_around, horizon_around
+from roadgpt.network.sight import FARTHEST, sight_along
 from roadgpt.road import Road, World
 from roadgpt.traffic import SIZES, Actor, Tracks
 

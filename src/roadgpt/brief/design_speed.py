@@ -41,6 +41,7 @@ class SpeedLimits(NamedTuple):
     radius: float  # the least radius of turns
     crest: float  # the least vertical radius of crests: 100 K
     sag: float  # the least vertical radius of sags
+    sight: float  # the stopping sight distance
     transition: float  # the length of the clothoid at either end of a turn, where the turn has room for it
 
     @property
@@ -67,5 +68,6 @@ def limits_at(kmh: float) -> SpeedLimits:
         radius=kmh**2 / (127 * (SUPERELEVATION + friction)),
         crest=100 * sight**2 / 658,
         sag=100 * sight**2 / (120 + 3.5 * sight),
+        sight=sight,
         transition=TRANSITION * kmh / 3.6,
     )

@@ -172,7 +172,7 @@ def features_in(run: Run) -> dict[str, float]:
     records = records_of(run.road, run.drive, run.world) if run.drive is not None else []
     found = features_of(run.road.centreline(PER_POINT), records) | behaviour_of(run.road, run.brief)
     if run.world.has_ground and run.road.has_way:
-        from roadgpt.network.landscape import sight_along
+        from roadgpt.network.sight import sight_along
 
         found["SIGHT"] = round(min(float(sight_along(run.road, run.world)[1].min()), run.road.length), 1)
     if run.drive is not None and run.drive.others is not None and run.verdict is not None:

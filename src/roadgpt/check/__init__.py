@@ -34,7 +34,7 @@ RULE_SETS = {
         "finite", "number_of_points", "too_short", "inside_map", "below_floor", "too_steep", "too_abrupt",
         "too_tight", "ring_too_small", "ramp_too_short", "arms_too_close", "no_overlap",
         "connection_too_tight", "junction_not_level", "lanes_do_not_match", "unreachable", "not_in_land",
-        "promises",
+        "sight_too_short", "promises",
     ),
     "sbft": ("sbft",),
 }  # fmt: skip

@@ -24,6 +24,7 @@ LEAST = 40.0  # m, least side of the area without the margin
 HORIZON = (300.0, 700.0, 1500.0, 3000.0, 6000.0, 9000.0)  # m beyond the margin: rings of points that are seen
 BEARINGS = 72  # points of each ring
 FREE = 4.0  # m beside the centre line, up to which the land has the height of the way
+PASSES = 2  # of smoothing
 SHORE = 1.2  # m, least height of any road above water near it
 DEEP = 3.0  # m of water
 BANK, BEACH = 0.25, 0.12  # slopes below and above the edge of water
@@ -290,8 +291,11 @@ def _base(places: _Places, way: Way, x: Array, y: Array) -> Array:
     j = np.rint((way.others[:, 1] - y[0]) / CELL).astype(int).clip(0, len(y) - 1)
     np.add.at(total, (j, i), way.others[:, 2])
     np.add.at(count, (j, i), 1.0)
-    heights = _pulled(np.where(count > 0, total / np.maximum(count, 1), 0.0), (count > 0).astype(float))
-    return np.asarray(gaussian_filter(heights, 1.0, mode="nearest"))
+    known, heights = (count > 0).astype(float), np.zeros(places.x.shape)
+    for _ in range(PASSES):  # each brings what smoothing left over
+        left = known * (total / np.maximum(count, 1) - heights)
+        heights += gaussian_filter(_pulled(left, known), 1.0, mode="nearest")
+    return heights
 
 
 def _pulled(values: Array, known: Array) -> Array:

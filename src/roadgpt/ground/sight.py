@@ -1,19 +1,16 @@
-"""Lines of sight over land: whether hills, cuttings and walls of tunnels hide a point, and how far along a
-road its driver sees."""
+"""Lines of sight over land: whether hills, cuttings and walls of tunnels hide a point."""
 
 import math
 from typing import NamedTuple
 
 import numpy as np
 
-from roadgpt.compiled import compiled, inlined
+from roadgpt.compiled import inlined
 from roadgpt.geometry.curve import Array
 from roadgpt.ground import grading
 from roadgpt.ground.ground import Ground
 
-EYE, OBJECT = 1.08, 0.60  # m above the road (AASHTO Green Book 3.2.6: eye of a car's driver, tail lights)
 GRAZING = 0.05  # m of land above a line of sight that hide nothing: less than the grid tells
-FARTHEST = 400.0  # m, along the road
 
 
 class Horizon(NamedTuple):
@@ -60,24 +57,3 @@ def is_behind_land(
         if low * (1.0 - v) + high * v > az + share * (bz - az) + GRAZING:
             return True
     return False
-
-
-@compiled
-def sight_distances(horizon: Horizon, points: Array, step: float) -> Array:
-    """Returns how far in metres a driver sees an object on the road from each of its points ``(n, 3)``, which
-    lie ``step`` metres apart in the middle of the lane; infinite where it is seen to the end, and FARTHEST
-    at most otherwise."""
-    found = np.full(len(points), np.inf)
-    for n in range(len(points)):
-        for m in range(n + 1, len(points)):
-            far = (m - n) * step
-            if far > FARTHEST:
-                found[n] = FARTHEST
-                break
-            if is_behind_land(
-                horizon, points[n, 0], points[n, 1], points[n, 2] + EYE,
-                points[m, 0], points[m, 1], points[m, 2] + OBJECT,
-            ):  # fmt: skip
-                found[n] = far - step
-                break
-    return found

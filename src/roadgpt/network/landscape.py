@@ -1,6 +1,7 @@
 """Makes the ground around a road: the land that its World asks for, with all roads of its network in it, on
 bridges and in tunnels where the land asks for them."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -8,21 +9,25 @@ from itertools import groupby, pairwise
 from typing import Literal, NamedTuple
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
 from roadgpt.ground.given import GivenGround
 from roadgpt.ground.ground import SLOPE, Ground, Pavement, Span, slope_for
 from roadgpt.ground.relief import Relief, Stretch, Way, made, rings_around, stretches
-from roadgpt.ground.sight import OPEN, Horizon, horizon_of, sight_distances
+from roadgpt.ground.sight import OPEN, Horizon, horizon_of
 from roadgpt.network.network import NetworkRoad
 from roadgpt.network.road_or_route import is_route, network_of
 from roadgpt.network.surface import COVER, pavement_of
 from roadgpt.road import Road, World
 
 STEP = 2.0  # m between the points of roads that land is made around
+BEHIND = 16.0  # m of land beyond the ends of a road that leads on as the road does
 MARGIN = 8.0  # m of road before and behind a bridge or a tunnel
 UNDER_BRIDGE = 2.0  # m from given land to a road on a bridge, at least
+CLEARANCE = 5.5  # m from a road to one that lies over it: 4.7 m for vehicles and the bridge
+SHARPEST = 0.35  # sine of the angle between them, of which bridges do not become longer
 SHORTEST = 12.0  # m, of a bridge or a tunnel
 
 
@@ -39,8 +44,10 @@ def ground_around(road: Road, world: World) -> Ground:
     if not (world.has_ground or any(each.profile.has_shoulders for each in network.roads)):
         level = min(world.site.z_floor, float(way.others[:, 2].min()) - 1.0)
         return Ground.of(_level_land(way, level), Pavement(np.empty((0, 3, 3)), ()))
+    if len(lines) == 1:
+        way = replace(way, others=_with_room_at_ends(way.others))
     parts = _stretches(road, world)
-    spans = [span for each in parts if (span := _span(each, road, world)) is not None]
+    spans = [*_over_others(road, world), *filter(None, (_span(each, road, world) for each in parts))]
     relief = _land(way, world, parts)
     is_given = isinstance(world.site.ground, GivenGround)
     slope = slope_for(relief, way.others) if is_given else SLOPE
@@ -51,7 +58,10 @@ def _stretches(road: Road, world: World) -> list[Stretch]:
     """Returns the stretches of a road through its landscape. Those with a bridge or a tunnel are moved, and
     shortened, so that they lie on one road between junctions; where there is no room they keep their place
     and have neither."""
-    found, taken = [], list[tuple[float, float]]()
+    found, taken = (
+        [],
+        [(each.start, each.end) for each in _on_the_way(_over_others(road, world), road, world)],
+    )
     for each in stretches(world.scene.landscape, road.length):
         if (kind := _kind(each)) is None:
             found.append(each)
@@ -85,16 +95,6 @@ def horizon_around(road: Road, world: World) -> Horizon:
     return horizon_of(ground_around(road, world)) if world.has_ground else OPEN
 
 
-def sight_along(road: Road, world: World, step: float = 5.0) -> tuple[Array, Array]:
-    """Returns stations about every ``step`` metres, and how far in metres the driver of the tested car sees
-    an object on the road from each of them (see ``ground.sight``): infinite where it is seen to the end."""
-    road = world.lay(road)
-    s = np.linspace(0.0, road.length, max(2, round(road.length / step) + 1))
-    points = road.at(s, world.profile_of(road).middle(s))
-    horizon = horizon_of(ground_around(road, world))
-    return s, sight_distances(horizon, np.ascontiguousarray(points), road.length / (len(s) - 1))
-
-
 class Crossing(NamedTuple):
     """A bridge or a tunnel of the tested car's road."""
 
@@ -108,7 +108,44 @@ def crossings(road: Road, world: World) -> tuple[Crossing, ...]:
     found = [
         Crossing(kind, each.start, each.end) for each in _stretches(road, world) if (kind := _kind(each))
     ]
+    found += _on_the_way(_over_others(road, world), road, world)
     return tuple(sorted(found, key=lambda each: each.start))
+
+
+def _on_the_way(spans: Sequence[Span], road: Road, world: World) -> list[Crossing]:
+    """Returns the bridges and tunnels of a network that lie on a road or a route, by its stations."""
+    found = []
+    for span in spans:
+        for part in _parts_of(road, world):
+            if part.member.id == span.road:
+                ends = (part.station(at) for at in (span.start, span.end))
+                start, end = (min(max(at, part.start), part.end) for at in sorted(ends))
+                found += [Crossing(span.kind, start, end)] if start < end else []
+    return found
+
+
+@lru_cache(maxsize=4)
+def _over_others(road: Road, world: World) -> tuple[Span, ...]:
+    """Returns bridges where a road lies over another one, or over itself, outside junctions."""
+    found = list[Span]()
+    if not world.has_ground:
+        return ()
+    members = network_of(road, world).roads_outside
+    stations = [np.arange(0.0, each.road.length, STEP) for each in members]
+    owner, s = np.repeat(np.arange(len(members)), [*map(len, stations)]), np.concatenate(stations)
+    points = np.concatenate([each.road.at(own) for each, own in zip(members, stations, strict=True)])
+    pairs = cKDTree(points[:, :2]).query_pairs(0.75 * STEP, output_type="ndarray")
+    pairs = np.take_along_axis(pairs, points[pairs, 2].argsort(axis=1), axis=1)
+    rises = np.diff(points[pairs, 2], axis=1)[:, 0]
+    for (low, top), rise in zip(pairs[rises >= CLEARANCE], rises[rises >= CLEARANCE].tolist(), strict=True):
+        member, under, at = members[owner[top]], members[owner[low]], float(s[top])
+        if any(each.road == member.id and each.start < at < each.end for each in found):
+            continue
+        turn = float(member.road.heading(s[[top]])[0] - under.road.heading(s[[low]])[0])
+        half = under.profile.reach / max(abs(math.sin(turn)), SHARPEST) + rise + MARGIN / 2
+        start, end = max(at - half, MARGIN), min(at + half, member.road.length - MARGIN)
+        found += [Span("bridge", member.id, start, end)] if end - start >= SHORTEST else []
+    return tuple(found)
 
 
 def _kind(stretch: Stretch) -> Literal["bridge", "tunnel"] | None:
@@ -123,6 +160,11 @@ class _Part(NamedTuple):
     end: float
     member: NetworkRoad
     is_along: bool  # whether it leads in the direction of the member's own stations
+
+    def station(self, at: float) -> float:
+        """Returns the station along the road or the route of one of the member."""
+        at *= (self.end - self.start) / self.member.road.length
+        return self.start + at if self.is_along else self.end - at
 
 
 def _parts_of(road: Road, world: World) -> list[_Part]:
@@ -159,6 +201,14 @@ def _has_room(road: Road, world: World, kind: str, middle: float) -> bool:
     x, y, z = road.at(middle).tolist()
     land = float(given.relief.at(np.array([x]), np.array([y]))[0])
     return bool(land < z - UNDER_BRIDGE if kind == "bridge" else land > z + COVER)
+
+
+def _with_room_at_ends(line: Array) -> Array:
+    """Returns a line ``(n, 3)`` that leads straight on at both ends, where cameras stand."""
+    far = np.arange(STEP, BEHIND + STEP, STEP)[:, None]
+    ahead, back = line[-1] - line[-2], line[0] - line[1]
+    start, end = (far * step / max(float(np.hypot(*step[:2])), 1e-9) for step in (back, ahead))
+    return np.concatenate([(line[0] + start)[::-1], line, line[-1] + end])
 
 
 def _level_land(way: Way, level: float) -> Relief:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from roadgpt.brief.junctions import NAMES
 from roadgpt.geometry.curve import Array
-from roadgpt.network.landscape import sight_along
+from roadgpt.network.sight import sight_along
 from roadgpt.report.birds_eye import STEP, Scale, name_places, places_of
 from roadgpt.report.canvas import (
     BLUE,

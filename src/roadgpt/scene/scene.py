@@ -28,6 +28,7 @@ Image = NDArray[np.uint8]
 
 
 STEP = 5.0  # m between the points of the way beside which trees stand
+OVER_LAND, UNDER_ROOFS = 0.6, 3.5  # m, of a camera above land; a tunnel's roof is higher above it
 FARTHEST = 1e7  # m or rad; greatest number in a pose
 
 
@@ -87,6 +88,10 @@ class Scene:
         if out.shape != shape or out.dtype != np.uint8:
             raise UsageError(f"out must be an array of bytes of shape {shape}")
         eye = camera.eye(pose)
+        if camera.mount == "chase":  # above land that is higher behind the car
+            x, y, z = eye.position
+            lift = float(self.ground.height(np.array([x]), np.array([y]))[0]) + OVER_LAND - z
+            eye.position[2] += lift if 0.0 < lift < UNDER_ROOFS else 0.0
         numbers = np.concatenate([eye.position, eye.axes.ravel(), [eye.focal]])
         meshes = [self.mesh, *([] if car is None else [saloon().placed(car, eye)])]
         meshes += [mesh_of(others)] if others else []

@@ -39,6 +39,7 @@ CALLED = {
     "scene": "part",
     "slippery": "slippery place",
     **{name: f"{name} road" for name in get_args(Surface)},
+    **{name: f"{name} land" for name in LAND_KINDS},
 }
 """Parts of a scene in words, where they are not called by their names."""
 
@@ -117,7 +118,7 @@ class _Stage:
     def _clear(self, target: Things) -> None:
         """Removes a part of which a scene has one."""
         has = {name: value for name, value in self.before if value != getattr(EMPTY, name)}
-        is_other = target.name in (*LIGHTS, *SURFACES) and target.name not in has.values()
+        is_other = target.name in (*LIGHTS, *SURFACES, *LAND_KINDS) and target.name not in has.values()
         names = [name for name in SINGLE[target.name] if name in has and not is_other]
         if not names or (target.side and target.side not in self.before.parked):
             raise EditError(f"the scene has no {_called(target)} to remove; leave that out")

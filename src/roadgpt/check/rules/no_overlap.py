@@ -1,4 +1,5 @@
-"""Requires that no two parts of the surface overlap in plan view outside junctions, whatever their heights.
+"""Requires that no two parts of the surface overlap in plan view outside junctions, unless they lie in land
+and one is on a bridge over the other, at least CLEARANCE higher.
 
 Source: the SBFT competition's rule against roads that cross themselves. The surface is divided into quads
 about 1 m long. A quad that is not convex shows that the surface folds: the radius of the bend is smaller than
@@ -20,6 +21,7 @@ from roadgpt.check.finding import Finding, owner_of, road_finding, single_road, 
 from roadgpt.check.ribbon import bulge, is_convex, near_pairs, quads_of, sides
 from roadgpt.check.sbft import SPLINE_REACH, edges, keeps_clear, splines
 from roadgpt.network import Network, NetworkRoad
+from roadgpt.network.landscape import CLEARANCE
 from roadgpt.road import Road, World
 
 SURELY = 0.9  # of the tightest radius: between the samples, a bend may be a little tighter
@@ -30,14 +32,14 @@ def inspect(network: Network, route: Road | None, brief: Brief | None, world: Wo
     a network, each pair of roads or junctions that overlap, and each road that overlaps itself."""
     road = single_road(route)
     if road is None:
-        return _in_network(network, route)
-    found, nearest, gap = overlap_with_itself(network.roads[0])
+        return _in_network(network, route, world)
+    found, nearest, gap = overlap_with_itself(network.roads[0], world)
     if found is not None:
         return (_finding(road, *found),)
     return _on_sbft_s_spline(road, world, nearest) if gap < SPLINE_REACH else ()
 
 
-def overlap_with_itself(member: NetworkRoad) -> tuple[tuple[int, str] | None, int, float]:
+def overlap_with_itself(member: NetworkRoad, world: World) -> tuple[tuple[int, str] | None, int, float]:
     """Returns three values: the index of the first sample at which the road folds or overlaps an earlier
     part, and what is wrong there (None: nothing is wrong); the index of the sample that is nearest to an
     earlier part (0 if the road folds, or no parts are close); and the metres between these two parts. The
@@ -59,6 +61,9 @@ def overlap_with_itself(member: NetworkRoad) -> tuple[tuple[int, str] | None, in
     half_turn = np.pi * radius / max(float(samples.s[1] - samples.s[0]), 1e-9)
     shapes, nearest = shapely.polygons(quads), (np.inf, 0)
     for i, j in near_pairs(quads, reach=SPLINE_REACH, apart=max(2, int(min(half_turn, len(quads))))):
+        if world.has_ground:
+            is_level = np.abs(samples.z[i] - samples.z[j]) < CLEARANCE
+            i, j = i[is_level], j[is_level]
         gap = shapely.distance(shapes[i], shapes[j])
         lies_over = gap <= slack
         if lies_over.any():
@@ -68,6 +73,15 @@ def overlap_with_itself(member: NetworkRoad) -> tuple[tuple[int, str] | None, in
         if gap.size:
             nearest = min(nearest, (float(gap.min()), int(j[gap.argmin()])))
     return None, nearest[1], nearest[0]
+
+
+def _is_above(one: NetworkRoad, other: NetworkRoad) -> bool:
+    """Returns whether one of two roads is CLEARANCE above the other wherever they come near each other."""
+    points = one.road.centreline(1.0)
+    s, t = other.road.locate(*points[:, :2].T)
+    near = np.abs(t) < one.profile.reach + other.profile.reach
+    rises = np.abs(points[near, 2] - other.road.elevation.height(s[near]))
+    return bool(rises.min(initial=np.inf) >= CLEARANCE)
 
 
 def _on_sbft_s_spline(road: Road, world: World, nearest: int) -> tuple[Finding, ...]:
@@ -83,7 +97,7 @@ def _finding(road: Road, index: int, what: str) -> Finding:
     return Finding("no_overlap", f"at s = {s:.0f} m, near ({x:.0f}, {y:.0f}): {what}", s, x, y)
 
 
-def _in_network(network: Network, route: Road | None) -> tuple[Finding, ...]:
+def _in_network(network: Network, route: Road | None, world: World) -> tuple[Finding, ...]:
     from roadgpt.check.footprint import footprint  # not for single roads
 
     shapes, found = footprint(network), []
@@ -92,6 +106,8 @@ def _in_network(network: Network, route: Road | None) -> tuple[Finding, ...]:
         one, other, area, *_ = each
         ring = network.roundabout_of.get(one.id)
         if ring is not None and ring is network.roundabout_of.get(other.id):
+            continue
+        if world.has_ground and _is_above(one, other):
             continue
         names = owner_of(network, one), owner_of(network, other)
         if names not in worst or area > worst[names][2]:
@@ -104,7 +120,7 @@ def _in_network(network: Network, route: Road | None) -> tuple[Finding, ...]:
         s = max((s for s in on_route if s is not None), default=None)
         found.append(Finding("conflicting_overlap", sentence, s, x, y))
     for member in shapes.folded:
-        own = overlap_with_itself(member)[0]
+        own = overlap_with_itself(member, world)[0]
         if own is not None:
             s = float(member.road.sample().s[own[0]])
             found.append(road_finding("conflicting_overlap", route, member, s, own[1]))

@@ -3,6 +3,7 @@
 
 const AHEAD = 7; // m before the car, where the camera behind it looks
 const FILLED = 0.84; // of the picture, by the road seen as a whole
+const [OVER_LAND, UNDER_ROOFS] = [0.6, 3.5]; // m, of a camera above land; a tunnel's roof is higher above it
 const LAG = 0.5; // s by which the camera behind the car turns later than the car
 
 function makeCameras(stage, trip, onDrag) {
@@ -28,6 +29,8 @@ function makeCameras(stage, trip, onDrag) {
     const { ahead, up } = SCENERY.mounts.chase;
     camera.position.copy(car).addScaledVector(way, ahead);
     camera.position.z += up - trip.car.height;
+    const lift = stage.landAt(camera.position) + OVER_LAND - camera.position.z;
+    if (lift > 0 && lift < UNDER_ROOFS) camera.position.z += lift;
     camera.lookAt(car.clone().addScaledVector(way, AHEAD));
     controls.target.copy(car);
   }

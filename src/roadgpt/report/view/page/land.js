@@ -2,6 +2,7 @@
 
 const COLOURS = Object.fromEntries(Object.entries(SCENERY.colours).map(([name, rgb]) => [name, new THREE.Color(...rgb)]));
 const CENTI = 100; // lengths of the land are told in centimetres
+const CELL = 4; // m, side of the squares in which points of the land are looked for
 const LOWER = 0.02; // m by which verges and the land lie below the asphalt
 const DOME = 9000; // m, radius of the sky
 const HAZE = 1300; // m, depth in which all becomes haze: about as films have it
@@ -55,6 +56,24 @@ function landMesh({ land }, origin, grain) {
   if (land.water.corners) group.add(landShape(land.water, origin, () => COLOURS.water, 0).mesh());
   if (land.solids.corners) group.add(landShape(land.solids, origin, () => COLOURS.concrete, LOWER).mesh());
   return group;
+}
+
+// A function that gives the height of the land at a place: that of the nearest point within a few metres.
+function landHeights({ land }, origin) {
+  const all = numbersOf(land.ground.points);
+  const cells = new Map();
+  const key = (x, y) => `${Math.floor(x / CELL)} ${Math.floor(y / CELL)}`;
+  for (let i = 0; i < all.length; i += 3) {
+    const [x, y, z] = [all[i] / CENTI - origin.x, all[i + 1] / CENTI - origin.y, all[i + 2] / CENTI - origin.z];
+    const name = key(x, y);
+    cells.set(name, [...(cells.get(name) || []), [x, y, z]]);
+  }
+  return ({ x, y }) => {
+    const near = [-1, 0, 1].flatMap((a) => [-1, 0, 1].flatMap((b) => cells.get(key(x + a * CELL, y + b * CELL)) || []));
+    const away = near.map((point) => Math.hypot(point[0] - x, point[1] - y));
+    const at = away.indexOf(Math.min(...away));
+    return at < 0 ? -Infinity : near[at][2];
+  };
 }
 
 function textureOf(picture) {

@@ -51,6 +51,7 @@ function makeStage(canvas, scene, trip, fastest) {
 
   return {
     camera, canvas, origin, radius, line, middle,
+    landAt: landHeights(scene, origin),
     plates: [],
     outline: x.map((each, i) => new THREE.Vector3(each - origin.x, y[i] - origin.y, z[i] - origin.z).sub(middle)),
     fit() {
