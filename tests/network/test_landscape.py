@@ -15,7 +15,7 @@ from roadgpt.network.landscape import crossings, ground_around
 from roadgpt.road import Road, World
 
 LONG, HEIGHT = 400.0, 50.0
-SHORES = ("lake", (20, 30, 60)), ("coast", (20, 30, 60, 100)), ("river", (20, 30))
+SHORES = [(kind, (20, 30, 60, 100)) for kind in ("lake", "coast", "river")]
 
 
 def road(grade: float = 0.0, radius: float = 0.0, length: float = LONG, more: float = 0.0) -> Road:

@@ -250,6 +250,9 @@ def made(
 
     ``box`` are the least and the greatest x and y; None: as far around the roads as pictures need it."""
     low, high = way.box if box is None else box
+    if box is None:  # with room for what lies far away
+        far_away = [away_of(each.land) - USUAL_AWAY[each.land.kind] for each in stretches if each.land.away]
+        low, high = low - max([0.0, *far_away]), high + max([0.0, *far_away])
     x, y = (np.arange(low[i], high[i] + CELL, CELL) for i in (0, 1))
     places = _Places.of(*np.meshgrid(x, y), way)
     base = _base(places, way, x, y)
@@ -441,7 +444,8 @@ def _with_water(
         if kind == "coast":
             out = np.minimum(out, _behind(way, side, places) + 8.0 * wave)
         out = np.maximum(out, first - 10.0 - places.free)
-        near = cdist(axis, way.others[:, :2]) < wide + (45.0 if kind == "river" else DAMMED)
+        reach = max(45.0 if kind == "river" else DAMMED, first + 15.0)
+        near = cdist(axis, way.others[:, :2]) < wide + reach
         if kind == "river":
             level = _falling(axis, near, way)[nearest]
         else:
