@@ -104,6 +104,7 @@ def test_the_crest_of_a_ridge_is_as_far_away_as_told(side: str, sign: float) -> 
     [
         ("river x2 across; bridge x2", "bridge", 2, 2),
         ("river across; bridge x2", "bridge", 2, 1),
+        ("bridge x2; river across", "bridge", 2, 1),
         ("bridge x3", "bridge", 3, 0),
         ("ridge x2 through; tunnel x2", "tunnel", 2, 0),
     ],
@@ -136,8 +137,7 @@ def test_the_kinds_of_land_are_higher_and_higher(of: Road) -> None:
 @pytest.mark.parametrize("radius", [0.0, 200.0, -120.0])
 @pytest.mark.parametrize(("grade", "more"), [(0.0, 0.0), (0.06, 0.0), (-0.06, 0.0), (0.06, -0.12)])
 def test_the_land_has_nearly_the_height_of_the_road(grade: float, more: float, radius: float) -> None:
-    of = road(grade, radius, more=more)
-    line = of.centreline(1.0)
+    line = (of := road(grade, radius, more=more)).centreline(1.0)
     assert np.abs(ground_of(of, "rolling").relief.at(*line[:, :2].T) - line[:, 2]).mean() < 0.6
 
 

@@ -1,7 +1,8 @@
-"""Roads that cross over themselves: bridges where they lie high enough, findings where not."""
+"""Roads that cross over themselves and others: bridges where they lie high enough, findings where not."""
 
 import math
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import shapely
 from network.ruled import all_findings
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.ground.mesh import mesh_of
+from roadgpt.network import read_road
 from roadgpt.network.landscape import crossings, ground_around
 from roadgpt.road import Road, World
 
@@ -80,3 +82,36 @@ def test_an_asked_bridge_keeps_away_from_the_one_over_the_road() -> None:
     assert [each.kind for each in built].count("bridge") == 3
     for one, other in pairwise(built):
         assert other.start - one.end > 5.0
+
+
+LANE = '<lane id="{}" type="driving"><width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane>'
+STRAIGHT = (
+    '<road id="{}" length="400" junction="-1"><planView><geometry s="0" x="{}" y="{}" hdg="{}" length="400">'
+    "<line/></geometry></planView>"
+    '<elevationProfile><elevation s="0" a="{}" b="0" c="0" d="0"/></elevationProfile>'
+    f'<lanes><laneSection s="0"><left>{LANE.format(1)}</left><center><lane id="0" type="none"/></center>'
+    f"<right>{LANE.format(-1)}</right></laneSection></lanes></road>"
+)
+
+
+@pytest.mark.parametrize(("rise", "angle"), [(8.0, 90), (-9.0, 90), (6.0, 45), (4.0, 90), (0.0, 60)])
+def test_a_road_of_a_map_over_another_one_has_a_bridge(rise: float, angle: float, tmp_path: Path) -> None:
+    turn = math.radians(angle)
+    start = 400.0 - 200.0 * math.cos(turn), 400.0 - 200.0 * math.sin(turn)
+    roads = STRAIGHT.format(1, 200, 400, 0, 20) + STRAIGHT.format(2, *start, turn, 20 + rise)
+    head = '<header revMajor="1" revMinor="6"/>'
+    (tmp_path / "two.xodr").write_text(f"<OpenDRIVE>{head}{roads}</OpenDRIVE>", encoding="utf-8")
+    place = read_road(tmp_path / "two.xodr")
+    told = [each for each in all_findings("no_overlap", place, LAND) if "overlap" in each.sentence]
+    ground = ground_around(LAND.lay(place), LAND)
+    if abs(rise) < 5.5:
+        assert len(told) == 1
+        assert not ground.pavement.spans
+        return
+    assert told == []
+    (span,) = ground.pavement.spans
+    assert span.road == (2 if rise > 0 else 1)
+    assert (span.start + span.end) / 2 == pytest.approx(200.0, abs=2.0)
+    assert span.end - span.start >= 7.0 / math.sin(turn) + 2 * abs(rise)  # slopes of 1:1 at its ends
+    middle = ground.height(np.array([400.0]), np.array([400.0]))
+    assert middle == pytest.approx(min(20.0, 20.0 + rise), abs=1e-3)

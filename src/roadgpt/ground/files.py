@@ -68,7 +68,7 @@ def read_ground(path: Path) -> GivenGround:
     try:
         return named(str(path), reader(path))
     except UNREADABLE as error:
-        why = str(error).splitlines()[0][:160] if str(error) else type(error).__name__
+        why = getattr(error, "strerror", None) or (str(error) or type(error).__name__).splitlines()[0][:160]
         raise UsageError(f"the land in {path} cannot be read: {why}") from error
 
 
