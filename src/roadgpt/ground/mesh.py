@@ -17,7 +17,7 @@ SIZES = ((32.0, np.inf), (16.0, 130.0), (8.0, 60.0), (4.0, 24.0), (2.0, 7.0))
 LINTEL = 1.5  # m of land above the mouth of a tunnel that is one strip
 THIN = 0.2  # m from the mouth of a tunnel to the land above it
 WATERSIDE = 8.0  # m, side of the squares beside water
-OPEN_SEA = 150.0  # m of water at the border of the land, from which on it goes on to the horizon
+OPEN_SEA = 0.25  # share of the border of the land from which on water there goes on to the horizon
 NEAREST = 0.55  # of a square's side; a corner that is nearer to a rim is left out
 APART = 1.0  # m between the points of a rim from which that is measured
 ROUNDS = 6  # of halving those segments of rims that no triangle has as a side
@@ -96,7 +96,7 @@ def water_of(ground: Ground) -> GroundMesh:
     points = np.column_stack([relief.x + relief.cell * i, relief.y + relief.cell * j, relief.water[j, i]])
     triangles = triangles.reshape(-1, 3)
     at_border = (i == 0) | (i == wide - 1) | (j == 0) | (j == len(wet) - 1)
-    if len(relief.beyond) and at_border.sum() * relief.cell > OPEN_SEA:
+    if len(relief.beyond) and at_border.sum() > OPEN_SEA * 2 * sum(wet.shape):
         (x0, y0), (x1, y1) = (relief.x, relief.y), np.add((relief.x, relief.y), relief.size)
         far, level = np.ptp(relief.beyond[:, 0]) / 2, float(np.median(points[at_border, 2]))
         corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]

@@ -15,6 +15,7 @@ from roadgpt.road.edges import line
 
 PARAPET, THICK = 1.0, 0.25  # m, height and thickness
 DEEP = (0.9, 1 / 22)  # m, least depth of a deck; depth as a share of the distance between piers
+KERB = 0.03  # m, of shoulders above the road
 PIER, PIERS = (1.4, 0.55), 28.0  # m along and share of the road's width across; m between piers
 FOOTING = 1.0  # m by which piers reach into the ground
 CLEAR = 5.0  # m from the road to the ceiling of a tunnel
@@ -26,12 +27,26 @@ def solids(network: Network, ground: Ground) -> Iterator[Array]:
     which their corners turn counter-clockwise."""
     for span in ground.pavement.spans:
         member = network.road(span.road)
-        yield np.concatenate([*(_bridge if span.kind == "bridge" else _tunnel)(member, span, ground)])
+        build = _bridge if span.kind == "bridge" else _tunnel
+        yield np.concatenate([*_walks(member, span), *build(member, span, ground)])
+
+
+def _walks(member: NetworkRoad, span: Span) -> Iterator[Array]:
+    """Yields what lies on the shoulders instead of grass."""
+    if member.profile.has_shoulders:
+        (left, right), s = _rims(member, span), _stations(member, span)
+        left_edge, right_edge = (_up(line(member.road, s, t), KERB) for t in member.profile.edges(s))
+        yield _sheet(left_edge, _up(left, KERB))
+        yield _sheet(_up(right, KERB), right_edge)
+
+
+def _stations(member: NetworkRoad, span: Span) -> Array:
+    s = stations_of(member)
+    return np.asarray(np.r_[span.start, s[(s > span.start) & (s < span.end)], span.end])
 
 
 def _rims(member: NetworkRoad, span: Span) -> tuple[Array, Array]:
-    s = stations_of(member)
-    s = np.r_[span.start, s[(s > span.start) & (s < span.end)], span.end]
+    s = _stations(member, span)
     left, right = (line(member.road, s, t) for t in member.profile.rims(s))
     return left, right
 

@@ -2,6 +2,7 @@
 
 const PINCH = 0.95; // share of the radius; an offset line nearer to the centre of its bend would fold
 const THICK = 0.3; // m of asphalt
+const ABOVE = 0.3; // m of the line that shows the road from afar
 const LEAN = 0.6; // m that grain moves sideways for each metre upwards
 const BARE = 0.35, GROWN = 0.9; // m beside the asphalt: gravel up to the first, grass from the second on
 const WORN = [[0, 1], [0.15, 1], [0.3, 0.85], [0.5, 0.93], [0.7, 0.85], [0.85, 1], [1, 1]]; // across a lane: share of its width, light
@@ -165,7 +166,7 @@ function markings(scene, origin) {
 }
 
 // The driven line, coloured by speed, on a white one that tells it from the asphalt; where nobody drove, the middle of
-// the road. `thick` times as wide, and then through everything, it shows from afar where the road is.
+// the road. `thick` times as wide, and then higher above it, it shows from afar where the road is.
 function lineAlong(scene, origin, fastest, thick = 1) {
   const { road } = scene;
   const columns = scene.drive ? scene.drive.columns : { ...road, t: road.s.map(() => 0) };
@@ -182,7 +183,7 @@ function lineAlong(scene, origin, fastest, thick = 1) {
       const dy = columns.y[after] - columns.y[before];
       const long = Math.hypot(dx, dy) || 1;
       const [ax, ay] = [(-dy / long) * thick * width / 2, (dx / long) * thick * width / 2];
-      const z = Math.min(onRoad(road, columns.s[i], columns.t[i]).z, columns.z[i]) + lift;
+      const z = Math.min(onRoad(road, columns.s[i], columns.t[i]).z, columns.z[i]) + lift + (thick > 1 ? ABOVE : 0);
       const rgb = isCase ? [250, 250, 250] : scene.drive ? speedColour(columns.speed[i] / fastest) : [60, 63, 68];
       const colour = new THREE.Color().setRGB(...rgb.map((v) => v / 255), THREE.SRGBColorSpace);
       const l = shape.point(columns.x[i] + ax, columns.y[i] + ay, z, colour);
@@ -192,7 +193,7 @@ function lineAlong(scene, origin, fastest, thick = 1) {
       right = r;
     });
     const nearer = isCase ? -3 : -4;
-    const look = { polygonOffset: true, polygonOffsetFactor: nearer, polygonOffsetUnits: nearer, depthTest: thick === 1, fog: thick === 1 };
+    const look = { polygonOffset: true, polygonOffsetFactor: nearer, polygonOffsetUnits: nearer, fog: thick === 1 };
     const mesh = shape.mesh(THREE.MeshBasicMaterial, look);
     mesh.renderOrder = thick > 1 ? 2 - isCase : 0;
     group.add(mesh);
