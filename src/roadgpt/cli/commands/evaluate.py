@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 INVALID = 1  # exit status, so that a script can ask
 CHECK_OPTIONS = (
     *named(options.SETUP, "rules"),
-    *named(options.WORLD, "map_size", *LANES),
+    *named(options.WORLD, "map_size", "ground", *LANES),
     *named(options.SETUP, "geometry"),
     *options.SCREEN,
 )
