@@ -1,5 +1,6 @@
 """Builds 60 descriptions of roads in landscapes and measures land and road: the reader beside keywords. Three
-writers who had not seen RoadGPT wrote the truths first.
+writers who had not seen RoadGPT wrote the truths first. Then it makes 40 changes of landscapes that a fourth
+asks for, and measures before and after.
 
     python benchmarks/bench_land_words.py [-v]"""
 
@@ -15,6 +16,7 @@ from scipy import ndimage
 from roadgpt import Brief, build, draft, read
 from roadgpt.brief.land_words import land_in
 from roadgpt.brief.scene import Scene
+from roadgpt.design.edit import edit
 from roadgpt.design.room import world_for
 from roadgpt.errors import RoadGPTError
 from roadgpt.ground.ground import Ground
@@ -102,7 +104,91 @@ def by_keywords(brief: Brief, text: str) -> World:
     return world_for(brief, World().changed(scene=Scene(landscape=wish.lands), ground=wish.kind or ""))
 
 
+def looks(road: Road, world: World) -> dict[str, Any]:
+    """What can be measured of the landscape of a road."""
+    ground, built = ground_around(road, world), crossings(road, world)
+    s = np.linspace(0.15, 0.85, 60) * road.length
+    points, heading = road.at(s), road.heading(s)
+    left = np.column_stack([-np.sin(heading), np.cos(heading)])
+    asides = np.arange(10.0, 200.0, 2.0)
+    found: dict[str, Any] = {"away": {}, "there": set()}
+    beside: dict[tuple[str, str], float] = {}
+    kinds = waters(ground) | ({"lake"} if "coast" in waters(ground) else set())
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        rows = [points[:, :2] + sign * aside * left for aside in asides]
+        wet = np.array([~np.isnan(ground.water(*row.T)) for row in rows])
+        high = np.array([ground.relief.at(*row.T) for row in rows]) - points[:, 2]
+        if wet.any(axis=0).mean() > 0.15:
+            first = asides[wet.argmax(axis=0)][wet.any(axis=0)]
+            beside |= {(kind, side): float(np.median(first)) for kind in kinds}
+        if (high.max(axis=0) > 25.0).mean() > 0.4:
+            beside["ridge", side] = float(np.median(asides[high.argmax(axis=0)]))
+    for (kind, _), far in beside.items():
+        found["away"][kind] = min(far, found["away"].get(kind, far))
+    forests = [each.side for each in world.scene.landscape if each.kind == "forest"]
+    found["there"] = {*beside, *(("forest", side) for side in ("left", "right") if {side, None} & {*forests})}
+    for kind in ("bridge", "tunnel"):
+        own = [each for each in built if each.kind == kind]
+        found[f"{kind}_m"], found[f"{kind}s"] = sum(each.end - each.start for each in own), len(own)
+    rows = [points[:, :2] + aside * left for aside in (-80, -40, 40, 80)]
+    lands = [ground.relief.at(*row.T) - points[:, 2] for row in rows]
+    found["land"] = float(np.subtract(*np.quantile(lands, [0.9, 0.1])))
+    found["kind"] = (world.site.made_ground or (world.scene.hills,))[0]
+    return found
+
+
+def changed_rightly(before: dict[str, Any], after: dict[str, Any], truth: dict[str, Any]) -> bool:
+    """Whether the landscape of a road changed as a truth says."""
+    held = []
+    for key, value in truth.items():
+        if key == "gone":
+            held.append(value not in {kind for kind, _ in after["there"]})
+        elif key == "there":
+            held.append(tuple(value) in after["there"])
+        elif key == "away":
+            one, other = (each["away"].get(value[0], np.nan) for each in (before, after))
+            ways = {"more": other > one + 3, "less": other < one - 3}
+            held.append(bool(ways[value[1]] if value[1] in ways else abs(other - value[1]) < 15))
+        elif key == "land" and value not in ("higher", "lower"):
+            held.append(after["kind"] == value)
+        else:
+            ways = {"more": 1, "higher": 1, "less": -1, "lower": -1}
+            difference = after[key] - before[key]
+            held.append(
+                difference * ways[value] > 0
+                if value in ways
+                else after[key] == (0 if value == "none" else value)
+            )
+    return all(held)
+
+
+def requests() -> None:
+    rows = (Path(__file__).parent / "land_requests.jsonl").read_text(encoding="utf-8").splitlines()
+    right, refused = 0, 0
+    for row in map(json.loads, rows):
+        brief = read(row["road"], reader="plan", is_map_fixed=False)
+        world = world_for(brief, World())
+        design = draft(brief, world, seed=3)
+        try:
+            made = edit(design, row["request"], world)
+        except RoadGPTError as error:
+            refused += 1
+            if "-v" in sys.argv:
+                print(f"  {row['request']}\n    {error}")
+            continue
+        one, other = (
+            looks(place.lay(build(each)), place)
+            for each, place in ((design, world), (made.design, made.world))
+        )
+        is_right = changed_rightly(one, other, row["truth"])
+        right += is_right
+        if "-v" in sys.argv and not is_right:
+            print(f"  {row['road']}: {row['request']}\n    {row['truth']}: {'; '.join(made.changes)}")
+    print(f"requests: {right} of {len(rows)} right, {refused} refused")
+
+
 def main() -> None:
+    requests()
     rows = (Path(__file__).parent / "land_descriptions.jsonl").read_text(encoding="utf-8").splitlines()
     for name in ("reader", "keywords"):
         whole, kept, asked, silent = 0, Counter[str](), Counter[str](), 0
