@@ -40,12 +40,12 @@ OVER: dict[str, tuple[str, ...]] = {
 }  # fmt: skip
 """What a way crosses something on, or in."""
 RISES = {
-    ("valley", "bridge"): (-16.0, 0.4, 20.0, 0.0), ("ridge", "tunnel"): (22.0, 0.6, 22.0, 0.0),
-    ("bridge", ""): (-11.0, 0.5, 12.0, 0.0), ("tunnel", ""): (18.0, 0.6, 22.0, 0.0),
-    ("cutting", ""): (7.0, 0.6, 25.0, 22.0), ("embankment", ""): (-6.0, 0.6, 25.0, 30.0),
-    ("valley", ""): (-9.0, 0.6, 25.0, 24.0), ("ridge", ""): (13.0, 0.6, 25.0, 26.0),
+    ("valley", "bridge"): (-16.0, 0.4, 20.0), ("ridge", "tunnel"): (22.0, 0.6, 22.0),
+    ("bridge", ""): (-11.0, 0.5, 12.0), ("tunnel", ""): (18.0, 0.6, 22.0),
+    ("cutting", ""): (7.0, 0.6, 25.0), ("embankment", ""): (-6.0, 0.6, 25.0),
+    ("valley", ""): (-9.0, 0.6, 25.0), ("ridge", ""): (13.0, 0.6, 25.0),
 }  # fmt: skip
-"""Rises of land that is crossed: m, share of half the length, m beyond that, and m aside until full."""
+"""Rises of land that is crossed: m, share of half the length up to which it is so high, and m beyond it."""
 
 
 @dataclass(frozen=True)
@@ -411,11 +411,10 @@ def _rise(stretch: Stretch, side: float, places: _Places, wave: Array, way: Way)
 
 def _crossing_rise(stretch: Stretch, places: _Places, way: Way) -> Array:
     structure = stretch.structure.kind if stretch.structure else ""
-    height, inner, outer, full = RISES.get((stretch.land.kind, structure)) or RISES[stretch.land.kind, ""]
+    height, inner, outer = RISES.get((stretch.land.kind, structure)) or RISES[stretch.land.kind, ""]
     along, share = _across(stretch, places, way)
     half = max(stretch.length / 2, 12.0)
-    rise = height * share * (1.0 - smooth(np.abs(along), half * inner, half + outer))
-    return np.asarray(rise * smooth(places.free, 3.0, full) if full else rise)
+    return np.asarray(height * share * (1.0 - smooth(np.abs(along), half * inner, half + outer)))
 
 
 def _with_water(
