@@ -32,15 +32,15 @@ WINDOW = 1200, 800  # px, of the browser
 MOST = 150_000  # bytes
 COLOURS = 256, 192, 128, 96, 64
 HOW_TOS = sorted((ROOT / "docs" / "how-to").glob("*.md"))
-SWITCHBACKS = "roadgpt-runs/zig-zag-down-a-hillside-with-4-sharp-swi-3"
 UPHILL = "roadgpt-runs/an-uphill-road-with-3-turns-7"
 PAGES = ("README.md", "docs/tutorial.md", *(f"docs/how-to/{page.name}" for page in HOW_TOS))
 BLOCK = re.compile(r"(?P<slow><!-- slow -->\n)?^```console\n(?P<lines>.*?)^```$", re.MULTILINE | re.DOTALL)
 TIMES = re.compile(r"in [\d.]+ s( \([\d.]+ roads/s\))?")
 """What differs from machine to machine in what commands print."""
 COMMANDS = {
-    "switchbacks": 'roadgpt run "zig-zag down a hillside with 4 sharp switchbacks, hard for a lane keeper" '
-    "-n 3 --seed 3 --friction 0.6 --oracle departure",
+    "pass": 'roadgpt run "a narrow road climbs out of a valley in four hairpins, along a lake, under a ridge" '
+    "--seed 2 --out pass",
+    "overview": "roadgpt view pass/runs/0001 --out pass.html",
     "uphill": 'roadgpt run "an uphill road with 3 turns" -n 5 --seed 7',
     "hard": 'roadgpt campaign "an uphill road with 3 turns" --goal failures -n 200 -j 2 --seed 7 --out hard',
     "faults": "roadgpt faults hard --minimise -j 2",
@@ -99,9 +99,9 @@ def made(work: Path, *names: str) -> Path:
     return work
 
 
-def switchbacks(work: Path) -> Image.Image:
-    """Returns a road from above, with a failure."""
-    return Image.open(made(work, "switchbacks") / SWITCHBACKS / "runs" / "0001" / "birds_eye.png")
+def landscape(work: Path) -> Image.Image:
+    """Returns the page of a road in its landscape, seen as a whole."""
+    return shot(made(work, "pass", "overview") / "pass.html", "#camera=free")
 
 
 def junctions(work: Path) -> Image.Image:
@@ -206,7 +206,7 @@ def lane_finder(work: Path) -> Image.Image:
 
 
 PICTURES = {
-    "switchbacks": switchbacks,
+    "landscape": landscape,
     "fault": fault,
     "film": film,
     "view": view,
@@ -264,7 +264,7 @@ def framed(picture: Image.Image, name: str) -> Image.Image:
     return whole
 
 
-QUICK = ("switchbacks", "junctions", "ramp", "maps")
+QUICK = ("junctions", "ramp", "maps")
 """Pictures that take seconds."""
 
 
