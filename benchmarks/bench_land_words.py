@@ -89,7 +89,7 @@ def right(road: Road, world: World, truth: dict[str, Any]) -> dict[str, bool]:
             held[key] = sum(each.kind == key[:-1] for each in built) == value
         elif key == "land":
             low, high = SPREADS[value]
-            held[key] = low < around[1] - around[0] < high or world.site.ground.startswith(value)
+            held[key] = low < around[1] - around[0] < high or world.scene.land == value
         elif key == "length_m":
             held[key] = abs(long - value) <= 0.12 * value
         elif key == "climb":

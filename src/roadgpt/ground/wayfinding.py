@@ -99,7 +99,7 @@ def way_between(
     here, east, north = relief.at(np.array([x, x + 1.0, x]), np.array([y, y, y + 1.0])).tolist()
     raise UsageError(
         f"no road of {100 * steepest:g} % or less with bends of {radius:g} m and cuttings and fills up to "
-        f"{DEEPEST:g} m leads from ({start[0]:g}, {start[1]:g}) to ({end[0]:g}, {end[1]:g}): the nearest "
+        f"{DEEPEST:g} m was found from ({start[0]:g}, {start[1]:g}) to ({end[0]:g}, {end[1]:g}); the nearest "
         f"way ends at ({x:.0f}, {y:.0f}), {left:.0f} m before it, where the land rises by "
         f"{100 * math.hypot(east - here, north - here):.0f} %"
     )

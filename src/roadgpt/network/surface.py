@@ -133,10 +133,12 @@ def pavement_of(network: Network, spans: Sequence[Span] = ()) -> Pavement:
 
 
 def _lines_of(member: NetworkRoad, start: float, end: float) -> list[Array]:
-    """Returns the left and right edge and the left and right rim between two stations, ``(n, 3)`` each."""
+    """Returns the left and right edge and the left and right rim between two stations, ``(n, 3)`` each, on
+    the sides of the triangles that exporters make of the road."""
     s, profile = stations_of(member), member.profile
-    s = np.r_[start, s[(s > start) & (s < end)], end]
-    return [line(member.road, s, t) for t in (*profile.edges(s), *profile.rims(s))]
+    own = np.r_[start, s[(s > start) & (s < end)], end]
+    lines = (line(member.road, s, t) for t in (*profile.edges(s), *profile.rims(s)))
+    return [np.column_stack([np.interp(own, s, each[:, k]) for k in range(3)]) for each in lines]
 
 
 def _unit(vector: Array) -> Array:
