@@ -24,8 +24,10 @@ MOST_MEGABYTES = 60
 
 
 def test_what_stands_at_the_end_of_a_long_text_is_read_or_named() -> None:
-    long = "The road begins with a straight of 80 m along fields where the old mill stands in the sun. " * 6
-    read = READER.read(f"{long}Then it climbs steeply over a crest, with a chicane before it.")
+    long = "Fields of barley lie where the old mill stands in the sun, and the farmer is asleep. " * 6
+    read = READER.read(
+        f"The road begins with a straight of 80 m. {long}Then it climbs steeply over a crest, with a chicane before it."
+    )
     assert all(word in plan(read) or word in read.unused for word in ("crest", "chicane"))
     assert read.confidence < SURE
 

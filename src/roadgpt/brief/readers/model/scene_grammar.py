@@ -33,6 +33,7 @@ from roadgpt.brief.scene import (
     ANYTHING,
     CUES,
     DOINGS,
+    LAND_KINDS,
     NUMBERS,
     ON_ITS_WAY,
     ONE_OF,
@@ -229,7 +230,8 @@ def _scene_change(numbers: Numbers) -> Symbol:
         sequel(one_of(*names), in_order(*which), one_of(":"), wish) for names, (which, wish) in things.items()
     ]
     parts = {tuple(part.first()): part for part in _parts(numbers)}  # each kind once
-    return any_of(sequel(one_of("add"), any_of(_tested_car(numbers), *parts.values())), *known)
+    new = any_of(_tested_car(numbers), *parts.values(), one_of(*LAND_KINDS))
+    return any_of(sequel(one_of("add"), new), *known)
 
 
 def _of_thing(kind: type[Frozen], numbers: Numbers) -> list[Symbol]:
