@@ -24,10 +24,9 @@ MOST_MEGABYTES = 60
 
 
 def test_what_stands_at_the_end_of_a_long_text_is_read_or_named() -> None:
-    long = "Fields of barley lie where the old mill stands in the sun, and the farmer is asleep. " * 6
-    read = READER.read(
-        f"The road begins with a straight of 80 m. {long}Then it climbs steeply over a crest, with a chicane before it."
-    )
+    long = "The fields are green and the sky above them is blue, and nobody is in a hurry today. " * 6
+    end = "Then it climbs steeply over a crest, with a chicane before it."
+    read = READER.read(f"The road begins with a straight of 80 m. {long}{end}")
     assert all(word in plan(read) or word in read.unused for word in ("crest", "chicane"))
     assert read.confidence < SURE
 

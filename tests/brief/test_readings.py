@@ -33,7 +33,7 @@ def param_of(row: Row) -> Any:
     return pytest.param(row, id=name_of(row), marks=marks)
 
 
-@pytest.mark.parametrize("row", map(param_of, rows("readings")))
+@pytest.mark.parametrize("row", [*map(param_of, rows("readings"))])
 def test_words_are_read_as_they_are_meant(row: Row) -> None:
     assert plan(normal(read(row["words"]))) == plan(normal(read_plan(row["plan"])))
 
