@@ -38,8 +38,8 @@ BLOCK = re.compile(r"(?P<slow><!-- slow -->\n)?^```console\n(?P<lines>.*?)^```$"
 TIMES = re.compile(r"in [\d.]+ s( \([\d.]+ roads/s\))?")
 """What differs from machine to machine in what commands print."""
 COMMANDS = {
-    "pass": 'roadgpt run "a narrow road climbs out of a valley in four hairpins, along a lake, under a ridge" '
-    "--seed 2 --out pass",
+    "pass": 'roadgpt run "a narrow road climbs out of a valley in four hairpins, '
+    'along a lake, under a ridge" --seed 2 --out pass',
     "overview": "roadgpt view pass/runs/0001 --out pass.html",
     "uphill": 'roadgpt run "an uphill road with 3 turns" -n 5 --seed 7',
     "hard": 'roadgpt campaign "an uphill road with 3 turns" --goal failures -n 200 -j 2 --seed 7 --out hard',

@@ -67,8 +67,8 @@ SHARES: Mapping[str, Mapping[str, float]] = {
 }
 """The share of each series of pairs in the training of each network. ``networks`` are hand-written routes
 with junctions, ``routes`` join these to hand-written roads, ``generated ...`` come from grammars, ``field``
-are texts of the field, ``landscape`` those of roads in landscapes, and ``composed`` join those that tell only a scene to roads; ``scene changes`` are
-requests that change a scene.
+are texts of the field, ``landscape`` those about roads in landscapes, and ``composed`` join those that tell
+only a scene to roads; ``scene changes`` are requests that change a scene.
 """
 TOKENS_OF = {"roads": OF_ROADS, "routes": TOKENS}
 """The tokens that each network knows."""
