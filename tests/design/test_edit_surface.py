@@ -37,15 +37,20 @@ def test_a_surface_beside_other_wishes_sets_the_friction_and_is_said(words: str,
     assert (made.design == ROAD) == only
 
 
-def test_a_surface_that_may_be_denied_stays_and_is_named() -> None:
-    made = edit(ROAD, "the second turn sharper, dry instead of wet", DRY)
-    assert made.world == DRY
-    assert "wet" in made.unused
+DENIED = ("the second turn sharper, dry instead of wet", "the second turn sharper, and no longer wet")
 
 
-def test_a_surface_that_the_road_does_not_have_is_not_taken_away() -> None:
+@pytest.mark.parametrize("words", DENIED)
+def test_a_surface_that_is_denied_is_taken_away(words: str) -> None:
+    made = edit(ROAD, words, World.model_validate({"scene": "wet", "friction": 0.6}))
+    assert made.world == World.model_validate({"scene": "", "friction": 1.0})
+    assert made.design != ROAD
+
+
+@pytest.mark.parametrize("words", DENIED)
+def test_a_surface_that_the_road_does_not_have_is_not_taken_away(words: str) -> None:
     with pytest.raises(EditError, match="has no wet road to remove"):
-        edit(ROAD, "the second turn sharper, and no longer wet", DRY)
+        edit(ROAD, words, DRY)
 
 
 def test_messages_about_words_have_no_syntax_of_plans() -> None:
