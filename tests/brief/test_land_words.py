@@ -6,7 +6,8 @@ from roadgpt.brief.amount import amount_text, exactly
 from roadgpt.brief.land_words import land_in
 from roadgpt.brief.plan import read_plan, read_scene, scene_plan
 from roadgpt.brief.readers.model.scenes import with_told
-from roadgpt.brief.scene import Land, Scene
+from roadgpt.brief.scene import Land, Scene, scene_text
+from roadgpt.errors import BriefError
 
 
 def lands(words: str) -> list[tuple[object, ...]]:
@@ -140,10 +141,29 @@ def test_hills_of_the_land_are_none_of_a_road_with_a_slope_of_its_own(
         ("tunnel x2; tunnel x2", "tunnel x2"),
         ("tunnel; bridge; tunnel", "tunnel; bridge; tunnel"),
         ("forest through; lake left; forest through", "forest through; lake left"),
-        ("bridge len=900", "bridge"),  # as long as the road
-        ("bridge len=90; tunnel len=3", "bridge len=90; tunnel"),
+        ("bridge len=8; tunnel x2 len=90", "bridge len=8; tunnel x2 len=90"),
     ],
 )
-def test_what_a_network_says_twice_or_with_the_length_of_the_road_is_taken_once(plan: str, kept: str) -> None:
+def test_what_a_network_says_twice_is_taken_once(plan: str, kept: str) -> None:
     told = with_told(read_plan(f"turn x3 | len=900 && {plan}"), "a road of 900 m")
     assert scene_plan(told.scene) == kept
+
+
+@pytest.mark.parametrize(
+    ("plan", "said"),
+    [
+        ("ridge along", "along the crest of a ridge"),
+        ("ridge along left", "a ridge along the road on the left"),
+        ("ridge left away=60", "a ridge on the left 60 metres away"),
+        ("ridge along left away=60", "a ridge along the road on the left 60 metres away"),
+        ("embankment", "an embankment"),
+    ],
+)
+def test_what_is_asked_of_a_ridge_is_said(plan: str, said: str) -> None:
+    assert scene_text(read_scene(plan)) == said
+
+
+@pytest.mark.parametrize("plan", ["ridge along away=60", "lake across away=60", "bridge away=60"])
+def test_only_what_lies_beside_the_road_is_away_from_it(plan: str) -> None:
+    with pytest.raises(BriefError, match="has no away= here; leave it out"):
+        read_scene(plan)

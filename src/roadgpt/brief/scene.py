@@ -334,7 +334,8 @@ class Land(Frozen):
     @model_validator(mode="after")
     def _fits(self) -> Self:
         _given(self, self.kind)
-        if self.away and (self.kind not in USUAL_AWAY or self.lie in ("across", "through")):
+        is_beside = self.kind in USUAL_AWAY and self.lie not in ("across", "through") and not self.is_crest
+        if self.away and not is_beside:
             raise ValueError(f"'{self.kind}' has no away= here; leave it out")
         if not span(self.count).lo >= 1:
             raise ValueError(f"a landscape has one {self.kind} or more, not {self.count}; leave it out")
@@ -342,13 +343,18 @@ class Land(Frozen):
             raise ValueError(f"'{self.kind}' has no {self.lie or self.side}; leave it out")
         return self
 
+    @property
+    def is_crest(self) -> bool:
+        """Whether the road leads along the crest of a ridge, not beside it."""
+        return self.kind == "ridge" and self.lie == "along" and self.side is None
+
     def __str__(self) -> str:
         if self.kind == "tree_lined":
             return "an avenue of trees"
         article = "an" if self.kind == "embankment" else "a"
         some = f"{article} {self.kind}" if self.count == exactly(1) else f"{self.count} {self.kind}s"
-        if self.kind == "ridge" and self.lie == "along":
-            return f"along the crest of {some}" if self.side is None else f"{some} on the {self.side}"
+        if self.is_crest:
+            return f"along the crest of {some}"
         lie = {"along": "along the road", "across": "to cross", "through": "to go through"}.get(
             self.lie or ""
         )

@@ -80,10 +80,10 @@ def need_remark(brief: Brief, found: World) -> str:
 
 def scene_remark(brief: Brief, found: World) -> str:
     """Returns a sentence on a scene that is not that of the words; empty if there is none."""
-    is_of_words = World().in_scene_of(brief).scene == found.scene
-    if brief.scene == found.scene or (is_of_words and brief.scene != Scene()):
-        return ""
-    if brief.scene == Scene():
+    meant = World().in_scene_of(brief).scene
+    if meant == found.scene and (brief.scene != Scene() or meant == Scene()):
+        return ""  # the sentence of the words has it
+    if meant in (Scene(), found.scene):
         friction = f"friction {found.site.friction:g}" if found.scene.surfaces else ""
         parts = (scene_text(found.scene), friction, land_remark(found.scene))
         is_land = found.scene.on_the_road == Scene()

@@ -399,7 +399,7 @@ def _rise(stretch: Stretch, side: float, places: _Places, wave: Array, way: Way)
     if land.kind == "valley":
         rise = 90.0 * np.tanh(np.maximum(free - 18.0, 0.0) / 150.0) * (1.0 + 0.35 * wave)
         return rise if land.side is None else -rise * (places.side == side) / 2
-    if land.kind == "ridge" and land.lie == "along" and land.side is None:
+    if land.is_crest:
         return np.asarray(-45.0 * np.tanh(np.maximum(free - 12.0, 0.0) / 90.0))
     if land.kind == "ridge":
         away = _from(_beside(stretch, side, way, away_of(land), 1.0), places)

@@ -58,10 +58,8 @@ def _stretches(road: Road, world: World) -> list[Stretch]:
     """Returns the stretches of a road through its landscape. Those with a bridge or a tunnel are moved, and
     shortened, so that they lie on one road between junctions; where there is no room they keep their place
     and have neither."""
-    found, taken = (
-        [],
-        [(each.start, each.end) for each in _on_the_way(_over_others(road, world), road, world)],
-    )
+    over = _on_the_way(_over_others(road, world), road, world)
+    found, taken = [], [(each.start, each.end) for each in over]
     for each in stretches(world.scene.landscape, road.length):
         if (kind := _kind(each)) is None:
             found.append(each)

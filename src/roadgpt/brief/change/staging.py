@@ -1,7 +1,7 @@
 """Makes the changes of a scene that a request asks for. Which actor, action or place is meant is decided on
 the scene before the changes."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, get_args
 
@@ -31,7 +31,12 @@ from roadgpt.errors import EditError, UnclearPlaceError
 
 HALF_AGAIN = 0.5  # 'more' is half as much again, and 'less' undoes that
 EMPTY = Scene()
-USUAL = {"speed": USUAL_SPEEDS, "decel": USUAL_BRAKING, "length": USUAL_LENGTHS, "away": USUAL_AWAY}
+USUAL: Mapping[str, Mapping[str, float]] = {
+    "speed": USUAL_SPEEDS,
+    "decel": USUAL_BRAKING,
+    "length": USUAL_LENGTHS,
+    "away": USUAL_AWAY,
+}
 """What numbers are where a scene says none, by the kind of what has them."""
 CALLED = {
     "ego": "start of the tested car",
@@ -173,8 +178,7 @@ class _Stage:
             self._once(f"{what} of '{thing}'", name, place, change.what, change.doing, of_one, change.bound)
         if change.doing is None:
             if change.what == "number":
-                usual = USUAL[change.key].get(getattr(thing, "kind", "")) if change.key in USUAL else None
-                return _with_number(thing, change, usual, str(thing))
+                return _with_number(thing, change, getattr(thing, "kind", ""), str(thing))
             if change.what == "count":
                 return thing.model_copy(update={"count": _amount(change, thing.count, str(thing))})
             if change.what == "add":
@@ -188,8 +192,7 @@ class _Stage:
             if action.what != change.doing:
                 actions.append(action)
             elif change.what == "number":
-                usual = USUAL_BRAKING.get(action.what) if change.key == "decel" else None
-                actions.append(_with_number(action, change, usual, f"{thing.kind} that {action}"))
+                actions.append(_with_number(action, change, action.what, f"{thing.kind} that {action}"))
         if all(action.what != change.doing for action in thing.actions):
             raise EditError(f"in '{thing}' nobody does '{change.doing}'; add it first")
         return thing.model_copy(update={"actions": tuple(actions)})
@@ -215,13 +218,14 @@ class _Stage:
         return mark.model_copy(update={"of": role.kind, "number": number})
 
 
-def _with_number(thing: Any, change: SceneChange, usual: float | None, said: str) -> Any:
+def _with_number(thing: Any, change: SceneChange, kind: str, said: str) -> Any:
     """Returns a thing with another number. A new one takes the place of those that it excludes; one that is
     not said is the usual one."""
     key = change.key
     rivals = {each for fields in ONE_OF if key in fields for each in fields if each != key}
     given = [each for each in rivals if getattr(thing, each, None) is not None]
     now: Amount | None = getattr(thing, key)
+    usual = USUAL.get(key, {}).get(kind)
     if now is None and usual and not given:
         now = exactly(usual)
     if now is None and change.to is None:

@@ -61,8 +61,8 @@ def _above_another(network: Network, ground: Ground) -> list[Finding]:
         for rim in member.profile.rims(s):
             points = member.road.at(s, rim * INSIDE)
             steps = np.nan_to_num(np.abs(ground.road(*points[:, :2].T) - points[:, 2]))
-            if len(s) and (at := int(steps.argmax())) >= 0 and steps[at] > worst:
-                worst, place = float(steps[at]), points[at]
+            if steps.max(initial=0.0) > worst:
+                worst, place = float(steps.max()), points[steps.argmax()]
     if place is None:
         return []
     sentence = f"at ({place[0]:.0f}, {place[1]:.0f}) two parts of the road meet with a step of {worst:.1f} m"

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any, get_args
 
-from roadgpt.brief.amount import exactly, span
+from roadgpt.brief.amount import exactly
 from roadgpt.brief.feasible import is_possible
 from roadgpt.brief.languages import TABLE, pattern_of, word_set
 from roadgpt.brief.model import Brief
@@ -107,7 +107,6 @@ SMALL_HOURS = ("22", "23", "00", "01", "02", "03", "04")
 DENIED = word_set("denying")
 LANDS = {kind: pattern_of(kind, "lands") for kind in ("rolling", "hilly", "flat")}
 """The words for kinds of land; mountains are the surroundings of a road."""
-LEAST = 10.0  # m, length of a structure that words can mean
 ON_BOTH_SIDES = pattern_of("both_sides", flags=re.IGNORECASE)
 
 
@@ -148,7 +147,7 @@ def with_told(brief: Brief, words: str) -> Brief:
     scene = brief.scene
     if scene == Scene():
         return brief
-    fields: dict[str, Any] = {"landscape": _landscape(brief)}
+    fields: dict[str, Any] = {"landscape": _each_once(scene.landscape)}
     if scene.landscape and scene.land is None:
         kinds = (kind for kind, pattern in LANDS.items() if pattern.search(plain(words)))
         fields["land"] = next(kinds, None)
@@ -168,13 +167,10 @@ def with_told(brief: Brief, words: str) -> Brief:
     return brief.model_copy(update=changes)
 
 
-def _landscape(brief: Brief) -> tuple[Land, ...]:
-    """Returns the landscape of a Brief. What a network says twice stands once, and a structure has no length
-    that is that of the road, or none of any structure."""
-    found, whole = list[Land](), brief.length
-    for land in brief.scene.landscape:
-        is_own = land.length is not None and land.length != whole and span(land.length).hi >= LEAST
-        land = land if is_own else land.model_copy(update={"length": None})
+def _each_once(lands: Iterable[Land]) -> tuple[Land, ...]:
+    """Returns a landscape in which nothing stands twice, but for single bridges, tunnels and the like."""
+    found = list[Land]()
+    for land in lands:
         if land not in found or (land.kind in STRUCTURES and land.count == exactly(1)):
             found.append(land)
     return tuple(found)
