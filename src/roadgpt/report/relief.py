@@ -99,7 +99,5 @@ def draw_land_along(axes: Axes, road: Road, world: World, s: Array, z: Array) ->
     axes.fill_between(s, z, land, where=(land > z) & ~crossed, color=CUT, lw=0, zorder=3, alpha=0.8)
     axes.fill_between(s, z, land, where=(land < z) & ~crossed, color=FILL, lw=0, zorder=3, alpha=0.8)
     works = ground.earthworks
-    axes.annotate(
-        f"land (dashed): cut {works.cut:,.0f} m³, fill {works.fill:,.0f} m³", (0.995, 0.02),
-        xycoords="axes fraction", ha="right", va="bottom", size=8.5, color=SOFT, path_effects=HALO, zorder=7,
-    )  # fmt: skip
+    said = f"land (dashed): cut {works.cut:,.0f} m³, fill {works.fill:,.0f} m³"
+    axes.set_xlabel(f"{axes.get_xlabel()};  {said}")
