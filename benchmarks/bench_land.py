@@ -35,7 +35,10 @@ PLANS = (
     "turn x3", "turn x4 | up", "hairpin x3 | up", "turn x5 | len=500..700", "straight 300", "turn x2 | down",
     "turn x6", "hairpin | down",
 )  # fmt: skip
-SCENES = ("", "", "lake along right", "bridge", "ridge through; tunnel", "valley", "river across", "forest")
+SCENES = (
+    "", "", "lake along right", "bridge", "ridge through; tunnel", "valley", "river across", "forest",
+    "valley across; bridge", "coast across",
+)  # fmt: skip
 CELL = 4.0  # m, side of a bucket of triangles
 GAP = 0.01  # m
 
@@ -115,11 +118,12 @@ def looked_at(road: Road, world: World, rng: np.random.Generator) -> dict[str, f
     spans = ground_around(road, world).pavement.spans
     for member in network_of(road, world).roads_outside:
         s = rng.uniform(0.0, member.road.length, max(20, int(member.road.length / 2)))
-        on_ground = np.ones(len(s), bool)
+        on_ground, is_open = np.ones(len(s), bool), np.ones(len(s), bool)
         for each in spans:
             if each.road == member.id:
                 on_ground &= (s < each.start - 1) | (s > each.end + 1)
-        s, rims = s[on_ground], member.profile.rims(s[on_ground])
+                is_open &= on_ground | (each.kind == "bridge")
+        s, on_ground, rims = s[is_open], on_ground[is_open], member.profile.rims(s[is_open])
         for share in (-0.999, -0.7, -0.3, 0.0, 0.3, 0.7, 0.999):
             points = member.road.at(s, np.where(share > 0, share * rims.left, -share * rims.right))
             earth, road_z = ground.highest(points[:, :2]), surface.highest(points[:, :2])
@@ -129,10 +133,9 @@ def looked_at(road: Road, world: World, rng: np.random.Generator) -> dict[str, f
         for rim in (rims.left, rims.right):
             for aside in (-0.02, -0.001, 0.001, 0.02, 0.3):
                 points = member.road.at(s, rim + np.sign(rim) * aside)[:, :2]
-                told["rims"] += len(s)
-                told["seams"] += int(
-                    (np.isnan(ground.highest(points)) & np.isnan(surface.highest(points))).sum()
-                )
+                told["rims"] += int(on_ground.sum())
+                is_hole = np.isnan(ground.highest(points)) & np.isnan(surface.highest(points))
+                told["seams"] += int((is_hole & on_ground).sum())
     return told
 
 

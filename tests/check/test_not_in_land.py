@@ -117,6 +117,19 @@ def test_given_land_leaves_room_or_not(scene: str, height: float, is_told: bool)
     assert sentences(straight(150.0), scene, plane(height)) == expected
 
 
+@pytest.mark.parametrize("is_cut", [True, False])
+def test_earth_on_a_bridge_is_told(is_cut: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A plane rises to the north, 4 m above the left rim; in the middle of the bridge it lies 3 m below."""
+    x = np.arange(31) * 10.0
+    heights = 7.0 + np.outer(x - 100.0, np.ones(31))
+    land = named("x.npy", Relief(0.0, 0.0, 10.0, heights, np.full_like(heights, np.nan), np.empty((0, 3))))
+    if not is_cut:
+        monkeypatch.setattr("roadgpt.network.surface.UNDER", -3.0)
+    told = sentences(straight(150.0 + is_cut), "bridge", World().changed(ground=land))
+    assert len(told) == (not is_cut)
+    assert is_cut or told[0].endswith("earth stands 3.0 m above the deck of a bridge")
+
+
 def route() -> Route:
     """Two roads of 40 m on the way through a roundabout."""
     return built(design(40.0, {"kind": "roundabout", "take": "straight"}, 40.0)).on_ground()

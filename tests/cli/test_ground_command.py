@@ -193,3 +193,10 @@ def test_a_settings_file_of_the_folder_cannot_name_a_file_of_heights(name: str) 
     roadgpt("run", "straight 100", *RUN, "--out", "here")
     assert read_run(Path("here", "runs", "0001")).world.site.ground == "hilly:3"
     assert World().site.ground == ""
+
+
+def test_land_smaller_than_any_map_is_refused() -> None:
+    Path("small.asc").write_text("ncols 9\nnrows 9\nxllcorner 0\nyllcorner 0\ncellsize 5\n" + "1 " * 81)
+    assert "is 40 m wide; give land of 50 m or more" in refused(
+        "run", "2 turns", "--ground", "small.asc", *RUN
+    )

@@ -175,6 +175,13 @@ WRITES: dict[str, tuple[str, Any, str | None, str]] = {
     "json too deep": ("land.npy", npy(PLAIN), "[" * 100_000, "cannot be read"),
     "no size of cells": ("land.npy", npy(PLAIN), '{"cell": 0}', "cells of 0 m"),
     "cells of a league": ("land.npy", npy(PLAIN), '{"cell": 4828}', "cells up to 1000 m"),
+    "cells in degrees": ("land.npy", npy(PLAIN), '{"cell": 0.0002778}', "in degrees"),
+    "asc in degrees": (
+        "land.asc",
+        ASC.replace("size 5", "size 0.0083333") + "1 2 3\n4 5 6\n",
+        None,
+        "degrees",
+    ),
     "colours": ("land.png", png(colour=2), SAID, "colours"),
     "truncated png": ("land.png", png()[:45], SAID, "cannot be read"),
     "png without its end": ("land.png", png(cut=9), SAID, "cannot be read"),
@@ -216,6 +223,15 @@ def test_what_is_no_land_is_refused(
 
 def test_a_geotiff_without_an_area_is_refused(tmp_path: Path) -> None:
     refused(tiff(tmp_path / "land.tif", np.zeros((4, 5), np.float32), Affine(10, 0, 0, 0, 0, 10)))
+
+
+def test_a_grid_whose_projection_is_in_degrees_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "land.asc"
+    path.write_text(ASC + "1 2 3\n4 5 6\n")
+    path.with_suffix(".prj").write_text('PROJCS["WGS 84 / UTM zone 32N",GEOGCS["WGS 84"]]')
+    assert read_ground(path).relief.cell == 5.0
+    path.with_suffix(".prj").write_text('GEOGCS["WGS 84",DATUM["WGS_1984"]]')
+    assert "in degrees, as land.prj says" in refused(path)
 
 
 def test_a_truncated_geotiff_a_missing_file_and_an_unknown_ending_are_refused(tmp_path: Path) -> None:

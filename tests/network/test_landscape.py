@@ -73,6 +73,21 @@ def test_a_river_beside_a_road_lies_below_it_and_falls(scene: str, grade: float,
     assert (falling - np.minimum.accumulate(falling)).max() <= 0.05
 
 
+@pytest.mark.parametrize("radius", [0.0, -150.0])
+@pytest.mark.parametrize("kind", ["", "rolling:2", "hilly:3", "mountain:5", "mountain:6"])
+@pytest.mark.parametrize("scene", ["river across", "lake across", "coast across", "valley across; bridge"])
+def test_no_earth_stands_on_a_bridge(scene: str, kind: str, radius: float) -> None:
+    """Nor in its last metre, where the slope of the land below begins at the height of the road."""
+    of = road(0.04, radius)
+    ground = ground_of(of, scene, kind)
+    (bridge,) = crossings(of, world(scene, kind))
+    s = np.linspace(bridge.start + 0.05, bridge.end - 0.05, 200)
+    lines = [of.at(s, np.full_like(s, t)) for t in (-6.9, -3.0, 0.0, 3.0, 6.9)]
+    apart = [line[:, 2] - ground.height(*line[:, :2].T) for line in lines]
+    assert np.min(apart) > 0.0
+    assert np.min(np.asarray(apart)[:, 40:-40]) > 0.9  # m, of the deck
+
+
 @pytest.mark.parametrize(("side", "sign"), [("left", 1.0), ("right", -1.0)])
 @pytest.mark.parametrize(("kind", "told"), SHORES)
 def test_a_shore_is_as_far_away_as_told(kind: str, told: tuple[int, ...], side: str, sign: float) -> None:

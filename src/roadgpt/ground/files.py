@@ -24,7 +24,7 @@ from roadgpt.ground.given import BESIDE, GivenGround
 from roadgpt.ground.relief import Relief
 
 MOST = 16_000_000  # heights in a file
-LARGEST_CELL, HIGHEST = 1000.0, 20_000.0  # m
+LEAST_CELL, LARGEST_CELL, HIGHEST = 0.05, 1000.0, 20_000.0  # m; 0.05 degrees are 5.6 km
 UNREADABLE = (  # what the libraries raise that read files, if those are broken
     OSError, EOFError, ValueError, LookupError, TypeError, ArithmeticError, MemoryError, RecursionError,
     SyntaxError, BadZipFile, zlib.error, TokenError, Image.DecompressionBombError,
@@ -81,6 +81,8 @@ def _relief(heights: NDArray[Any], cell: float, path: Path) -> Relief:
         raise UsageError(f"{path} has no table of 2 x 2 to {MOST:,} heights")
     if not 0 < cell <= LARGEST_CELL:
         raise UsageError(f"{path} has cells of {cell:g} m; give land with cells up to {LARGEST_CELL:g} m")
+    if cell < LEAST_CELL:
+        raise UsageError(f"{path} has cells of {cell:.2g} m, so it is in degrees; convert it to metres first")
     lost = ~(np.abs(table) <= HIGHEST) | (table == NO_DATA)
     if lost.any():
         raise UsageError(
@@ -129,6 +131,9 @@ def _asc(path: Path) -> Relief:
         if not 4 <= rows * columns <= MOST:
             raise UsageError(f"{path} has no table of 2 x 2 to {MOST:,} heights")
         table = np.array(lines.read().split(), np.float64).reshape(rows, columns)[::-1]
+    plan = path.with_suffix(".prj")
+    if plan.is_file() and plan.read_text(errors="replace").lstrip().upper().startswith(("GEOGC", "GEODC")):
+        raise UsageError(f"{path} is in degrees, as {plan.name} says; convert it to metres first")
     table = np.where(table == header.get("nodata_value", math.nan), math.nan, table)
     return _relief(table, header["cellsize"], path)
 

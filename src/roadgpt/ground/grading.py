@@ -42,15 +42,17 @@ class Layers(NamedTuple):
     relief_y: float
     relief_cell: float
     segments: Array
-    """x, y, z of both ends of each segment of a rim, (n, 6), and then of the edges of covers, from which land
-    is filled but not cut."""
-    rims: int  # how many segments are those of rims
+    """x, y, z of both ends, (n, 6), of the edges of what is clear under bridges, from which land is cut but
+    not filled; then of each segment of a rim; then of the edges of covers, where it is filled but not cut."""
+    floors: int  # the first segment from which land is filled
+    rims: int  # the first segment from which it is not cut
     triangles: Array  # x, y, z of the corners of the surface of the roads, (m, 9)
     starts: Integers  # of each bucket, in ``members``: one more than there are buckets
     members: Integers  # triangles
     slope: float
     covers: Array  # x, y, z of the corners of what land covers tunnels, (k, 9)
     lintels: Array  # x, y, z of both ends of the least height of land above each mouth of a tunnel, (k, 6)
+    clear: Array  # x, y, z of the corners of what land stays below under bridges, (k, 9)
 
 
 @inlined
@@ -228,6 +230,10 @@ def land_at(of: Layers, x: float, y: float) -> float:
         if of.fills[b, a] != fill:
             fill = of.fills[b, a]
             floor = max(floor, -_nearest_cone(of, fill, x, y, -1.0))
+    for k in range(len(of.clear)):
+        under = _height_on(of.clear[k], x, y)
+        if not math.isnan(under):
+            top = min(top, under)
     return min(max(found, floor), top)
 
 
@@ -239,8 +245,9 @@ def _nearest_cone(of: Layers, number: int, x: float, y: float, sign: float) -> f
         return math.inf
     best = sign * _cone(of.segments, number, x, y, of.slope, sign)
     for step in (-1, 1):
-        at, last = number + step, of.rims if sign > 0.0 else len(of.segments)
-        while 0 <= at < last:
+        at = number + step
+        first, last = (0, of.rims) if sign > 0.0 else (of.floors, len(of.segments))
+        while first <= at < last:
             one, two = max(at, at - step), min(at, at - step)
             if of.segments[two, 3] != of.segments[one, 0] or of.segments[two, 4] != of.segments[one, 1]:
                 break  # another rim, or a mouth between them

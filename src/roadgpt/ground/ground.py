@@ -33,6 +33,16 @@ def _left_of(ring: Array) -> Array:
     return np.asarray(left / np.maximum(np.hypot(*left.T), 1e-9)[:, None])
 
 
+def _sides_of(triangles: Array) -> Array:
+    """Returns the outer edges ``(n, 6)`` of triangles ``(k, 3, 3)``: those that no two of them share."""
+    corners = np.round(triangles.reshape(-1, 3), 6)
+    points, at = np.unique(corners, axis=0, return_inverse=True)
+    numbers = at.reshape(-1, 3)
+    edges = np.concatenate([numbers[:, k] for k in ([0, 1], [1, 2], [2, 0])])
+    single, counts = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
+    return np.asarray(points[single[counts == 1]].reshape(-1, 6))
+
+
 def slope_for(relief: Relief, points: Array) -> float:
     """Returns the slope of cuttings and fills for a road through points ``(n, 3)``: SLOPE, or steeper where
     the land is so steep that slopes of SLOPE would hardly end."""
@@ -75,6 +85,8 @@ class Pavement:
     portals: tuple[Portal, ...] = ()
     covers: Array = field(default_factory=lambda: np.empty((0, 3, 3)))
     """The corners of triangles ``(k, 3, 3)`` over tunnels: the land is not lower there."""
+    clear: Array = field(default_factory=lambda: np.empty((0, 3, 3)))
+    """The corners of triangles ``(k, 3, 3)`` under bridges: the land is not higher there."""
     spans: tuple[Span, ...] = ()
     decks: Array = field(default_factory=lambda: np.empty((0, 3, 3)))
     """The corners of the surface of the road on the spans, ``(k, 3, 3)``."""
@@ -94,8 +106,9 @@ class Pavement:
         starts, members = grading.buckets(plain, x, y, side, rows, columns)
         none, no = np.empty((rows, columns)), np.empty((0, 0), np.int32)
         layers = Layers(
-            x, y, side, none, no, no, none, 0.0, 0.0, 1.0, none, 0, plain, starts, members, SLOPE, none, none
-        )
+            x, y, side, none, no, no, none, 0.0, 0.0, 1.0, none, 0, 0, plain, starts, members, SLOPE, none,
+            none, none,
+        )  # fmt: skip
         inwards = np.concatenate([_left_of(ring) for ring in outlines])
         heights = grading.roads_at(layers, *(flat + INSIDE * inwards).T)
         corners = triangles.reshape(-1, 3)
@@ -117,16 +130,6 @@ class Pavement:
             at = np.hypot(*middle[:, :2].T) < np.hypot(*(portal.left - portal.right)[:2]) / 2 + SAME
             found = found[~(at & (np.abs(across) < 1e-2) & (np.abs(middle[:, :2] @ portal.ahead) < 0.05))]
         return found
-
-    @cached_property
-    def sides(self) -> Array:
-        """The outer edges of the covers, ``(n, 6)``: those that no two triangles share."""
-        corners = np.round(self.covers.reshape(-1, 3), 6)
-        points, at = np.unique(corners, axis=0, return_inverse=True)
-        triangles = at.reshape(-1, 3)
-        edges = np.concatenate([triangles[:, k] for k in ([0, 1], [1, 2], [2, 0])])
-        single, counts = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
-        return np.asarray(points[single[counts == 1]].reshape(-1, 6))
 
     @cached_property
     def lintels(self) -> Array:
@@ -174,10 +177,14 @@ class Ground:
         place = relief.x, relief.y, cell
         none, no = np.empty((1, 1)), np.empty((0, 0), np.int32)
         starts, members = grading.buckets(triangles, *place, *shape)
+        under, over = _sides_of(pavement.clear), _sides_of(pavement.covers)
+        segments = np.concatenate([under, pavement.segments, over])
+        floors, rims = len(under), len(under) + len(pavement.segments)
         layers = Layers(
             *place, none, no, no, relief.heights, relief.x, relief.y, relief.cell,
-            np.concatenate([pavement.segments, pavement.sides]), len(pavement.segments), triangles, starts,
-            members, slope, np.ascontiguousarray(pavement.covers.reshape(-1, 9)), pavement.lintels,
+            segments, floors, rims, triangles, starts, members, slope,
+            np.ascontiguousarray(pavement.covers.reshape(-1, 9)), pavement.lintels,
+            np.ascontiguousarray(pavement.clear.reshape(-1, 9)),
         )  # fmt: skip
         roofs = grading.on_roads(layers.covers, *place, *shape)
         land = _on_grid(relief, *place, *shape)
@@ -186,8 +193,9 @@ class Ground:
             land[tuple(at.T)] = grading.heights_at(layers, x, y, False)
         roads = grading.on_roads(triangles, *place, *shape)
         fixed = np.where(np.isnan(roads), roofs, roads)
-        cuts, top = grading.spread(pavement.segments, land, fixed, *place, slope, 1.0)
-        fills, floor = grading.spread(layers.segments, land, fixed, *place, slope, -1.0)
+        cuts, top = grading.spread(segments[:rims], land, fixed, *place, slope, 1.0)
+        fills, floor = grading.spread(segments[floors:], land, fixed, *place, slope, -1.0)
+        fills[fills >= 0] += floors
         graded = np.where(np.isnan(roofs), np.minimum(np.maximum(land, floor), top), land)
         heights = np.where(np.isnan(roads), graded, roads)
         layers = layers._replace(heights=heights, cuts=cuts, fills=fills)

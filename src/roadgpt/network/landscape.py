@@ -19,13 +19,12 @@ from roadgpt.ground.relief import Relief, Stretch, Way, made, rings_around, stre
 from roadgpt.ground.sight import OPEN, Horizon, horizon_of
 from roadgpt.network.network import NetworkRoad
 from roadgpt.network.road_or_route import is_route, network_of
-from roadgpt.network.surface import COVER, pavement_of
+from roadgpt.network.surface import COVER, UNDER, pavement_of
 from roadgpt.road import Road, World
 
 STEP = 2.0  # m between the points of roads that land is made around
 BEHIND = 16.0  # m of land beyond the ends of a road that leads on as the road does
 MARGIN = 8.0  # m of road before and behind a bridge or a tunnel
-UNDER_BRIDGE = 2.0  # m from given land to a road on a bridge, at least
 CLEARANCE = 5.5  # m from a road to one that lies over it: 4.7 m for vehicles and the bridge
 SHARPEST = 0.35  # sine of the angle between them, of which bridges do not become longer
 SHORTEST = 12.0  # m, of a bridge or a tunnel
@@ -198,7 +197,7 @@ def _has_room(road: Road, world: World, kind: str, middle: float) -> bool:
         return True
     x, y, z = road.at(middle).tolist()
     land = float(given.relief.at(np.array([x]), np.array([y]))[0])
-    return bool(land < z - UNDER_BRIDGE if kind == "bridge" else land > z + COVER)
+    return bool(land < z - UNDER if kind == "bridge" else land > z + COVER)
 
 
 def _with_room_at_ends(line: Array) -> Array:

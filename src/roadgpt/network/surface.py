@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from roadgpt.brief.junctions import RAMPS
 from roadgpt.geometry.curve import Array
-from roadgpt.ground.ground import Pavement, Portal, Span
+from roadgpt.ground.ground import SLOPE, Pavement, Portal, Span
 from roadgpt.network.network import Junction, Kind, Network, NetworkRoad, RoadEnd
 from roadgpt.network.paved import GRID, NEAR, Area, paved_by, polygons_in
 from roadgpt.road import Road
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from shapely import Polygon
 
 COVER = 7.0  # m from the road in a tunnel to the least land above it
+UNDER = 2.0  # m from a road on a bridge to the land below it, at least; less beside its ends
 LONGEST = 4.0  # m between the points of a road's rim
 ROUND = 8  # segments in a quarter of a circle, where a shoulder rounds a corner
 GREEN = 0.1  # least share of a hole in the paved area that shoulders leave free, so that grass grows there
@@ -94,6 +95,7 @@ def pavement_of(network: Network, spans: Sequence[Span] = ()) -> Pavement:
 
     parts = NetworkSurface.of(network)
     inner, outer, shapes, covers, decks, portals = [], [], [], [], [], list[Portal]()
+    clear = []
     for member in parts.roads:
         own = sorted((each for each in spans if each.road == member.id), key=lambda each: each.start)
         stops = [0.0, *(at for each in own for at in (each.start, each.end)), member.road.length]
@@ -105,7 +107,10 @@ def pavement_of(network: Network, spans: Sequence[Span] = ()) -> Pavement:
                 shapes.append(shapely.Polygon(np.concatenate([right_rim, left_rim[::-1]])[:, :2]))
                 continue
             decks.append(_quads(right_rim, left_rim))
-            if own[number // 2].kind == "tunnel":
+            if own[number // 2].kind == "bridge":
+                low_left, low_right = (_lowered(rim) for rim in (left_rim, right_rim))
+                clear.append(_quads(low_right, low_left))
+            else:
                 covers.append(_quads(right_rim, left_rim) + [0.0, 0.0, COVER])
                 for at, way in ((0, 1), (-1, -1)):
                     ahead = way * _unit(left_rim[at] - right_rim[at])[::-1] * [1.0, -1.0]
@@ -127,8 +132,8 @@ def pavement_of(network: Network, spans: Sequence[Span] = ()) -> Pavement:
         for part in polygons_in(whole)
         for ring in (orient(part).exterior, *orient(part).interiors)
     ]
-    cover, deck = (np.concatenate(parts) if parts else np.empty((0, 3, 3)) for parts in (covers, decks))
-    more = {"portals": tuple(portals), "covers": cover, "spans": tuple(spans), "decks": deck}
+    cover, under, deck = (np.concatenate([np.empty((0, 3, 3)), *each]) for each in (covers, clear, decks))
+    more = {"portals": tuple(portals), "covers": cover, "clear": under, "spans": tuple(spans), "decks": deck}
     return Pavement.of(np.concatenate([*inner, *outer]), rings, **more)
 
 
@@ -139,6 +144,13 @@ def _lines_of(member: NetworkRoad, start: float, end: float) -> list[Array]:
     own = np.r_[start, s[(s > start) & (s < end)], end]
     lines = (line(member.road, s, t) for t in (*profile.edges(s), *profile.rims(s)))
     return [np.column_stack([np.interp(own, s, each[:, k]) for k in range(3)]) for each in lines]
+
+
+def _lowered(rim: Array) -> Array:
+    """Returns the line ``(n, 3)`` of land below a rim of a bridge: down from both ends, then along it."""
+    far = np.r_[0.0, np.cumsum(np.hypot(*np.diff(rim[:, :2], axis=0).T))]
+    down = np.minimum(SLOPE * np.minimum(far, far[-1] - far), UNDER)
+    return np.asarray(rim - down[:, None] * [0.0, 0.0, 1.0])
 
 
 def _unit(vector: Array) -> Array:

@@ -219,7 +219,11 @@ class Site(BaseModel):
         given = data.get("ground") if isinstance(data, Mapping) else None
         if not isinstance(given, GivenGround) or "map_size" in data:
             return data
-        return {**data, "map_size": min(max(given.relief.size), LARGEST_MAP)}
+        if (wide := max(given.relief.size)) < SMALLEST_MAP:
+            raise UsageError(
+                f"the land '{given}' is {wide:.3g} m wide; give land of {SMALLEST_MAP:g} m or more"
+            )
+        return {**data, "map_size": min(wide, LARGEST_MAP)}
 
     @property
     def made_ground(self) -> tuple[Any, int] | None:

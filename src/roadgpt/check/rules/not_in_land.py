@@ -1,5 +1,5 @@
 """Requires a road to have room in its land: for every bridge and tunnel that is asked for, without walls that
-are higher than 15 m, and without a part whose verge lies over another part.
+are higher than 15 m, without a part whose verge lies over another part, and without earth on bridges.
 
 A wall stands where two parts of the roads have no room for slopes between them. Without land, or on flat land
 that nobody asked for, nothing is checked."""
@@ -20,8 +20,8 @@ BESIDE = 0.1  # m beside a rim, where the ground is looked at
 
 
 def inspect(network: Network, route: Road | None, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Reports bridges and tunnels without room, the highest wall if it is too high, and the
-    highest step between verges."""
+    """Reports bridges and tunnels without room, the highest wall if it is too high, the highest step between
+    verges, and the highest earth on bridges."""
     if route is None or not world.has_ground:
         return ()
     from roadgpt.network.landscape import crossings, ground_around
@@ -34,6 +34,14 @@ def inspect(network: Network, route: Road | None, brief: Brief | None, world: Wo
             found.append(Finding("not_in_land", sentence))
     ground = ground_around(route, world)
     found += _above_another(network, ground)
+    decks = [each for each in ground.pavement.spans if each.kind == "bridge"]
+    for member, s in ((network.road(each.road), np.arange(each.start, each.end, 1.0)) for each in decks):
+        points = np.concatenate([member.road.at(s, t * INSIDE) for t in (*member.profile.rims(s), 0.0 * s)])
+        above = ground.beside(*points[:, :2].T) - points[:, 2]
+        if above.max() > STEP:
+            x, y = points[above.argmax(), :2].tolist()
+            sentence = f"at ({x:.0f}, {y:.0f}) earth stands {above.max():.1f} m above the deck of a bridge"
+            found.append(Finding("not_in_land", sentence, None, x, y))
     rims = ground.pavement.segments
     if len(rims):
         ahead = rims[:, 3:5] - rims[:, :2]
