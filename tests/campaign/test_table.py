@@ -23,8 +23,9 @@ def slowly(record: Record) -> str:
     table = csv.writer(text, lineterminator="\n")
     table.writerow([*COLUMNS, *features])
     for cell, one in ((name, one) for name in record.names() for one in record.results(name)):
-        asked = (one.batch, one.proposal.origin, seed_of_driver(one.number, one.proposal))
-        came = (one.outcome, one.cause, one.side, one.length, one.margin, one.max_oob, one.beyond, one.at_s)
+        asked = (one.batch, one.proposal.origin, "", "", seed_of_driver(one.number, one.proposal))
+        margin = None if one.cause == "collision" else one.margin
+        came = (one.outcome, one.cause, one.side, one.length, margin, one.max_oob, one.beyond, one.at_s)
         known = [one.own_share, one.handed_to, one.description, *map(one.features.get, features)]
         table.writerow([cell, one.number, *asked, *came, *known])
     return text.getvalue()

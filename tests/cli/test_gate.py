@@ -284,3 +284,54 @@ def test_run_campaign_resume_and_repeated_tests_have_the_gate() -> None:
     done = invoke("drive", "c", *slow, "--baseline", "c")
     assert done.exit_code == 0
     assert "2 of 2 roads compared with c; it was driven with driver mine.py:Mine (here" in done.stdout
+
+
+def a_test(
+    folder: Path | None = None, number: int = 1, outcome: str = "PASS", seed: int = 1, scenario: str = "",
+    scene: str = "", cause: str | None = None, margin: float = 1.75, keep_driving: bool = False,
+) -> Run:  # fmt: skip
+    """A Run on always the same road, of a scenario whose scene is known."""
+    setup = Setup(scenario=scenario, keep_driving=keep_driving)
+    made = a_run(margin=margin, outcome=outcome, world=World().changed(scene=scene), setup=setup)
+    made = replace(made, index=number, seed=seed)
+    if made.verdict is not None:
+        made = replace(made, verdict=replace(made.verdict, cause=cause))
+    if folder is not None:
+        write_run(made, folder)
+    return made
+
+
+TESTS = (
+    ("ncap:CCRs", "ego v=50; car ahead v=0 impact=50", 1),
+    ("ncap:CCRs", "ego v=50; car ahead v=0 impact=25", 1),
+    ("ncap:CCRm", "ego v=50; car ahead v=20 impact=50", 1),
+    ("", "light", 1),
+    ("", "light", 2),
+    ("", "", 1),
+)
+
+
+def test_tests_on_one_road_are_paired_by_scenario_parameters_scene_and_seed(tmp_path: Path) -> None:
+    """Every second one failed before: unchanged, nothing is worse; and each that fails anew is found."""
+    for number, (scenario, scene, seed) in enumerate(TESTS, 1):
+        a_test(tmp_path, number, ("PASS", "FAIL")[number % 2], seed, scenario, scene)
+    for changed in (None, 2, 4, 6):
+        found = Gate(None, (), tmp_path)
+        for number, (scenario, scene, seed) in enumerate(TESTS, 1):
+            outcome = "FAIL" if number == changed else ("PASS", "FAIL")[number % 2]
+            worse = found.add(str(number), a_test(None, number, outcome, seed, scenario, scene))
+            assert worse == ("FAIL, in the baseline PASS" if number == changed else "")
+        assert found.remark == f"6 of 6 roads compared with {tmp_path}"
+    other = Gate(None, (), tmp_path)
+    assert other.add("it", a_test(seed=3, scene="light", outcome="FAIL")) == ""
+    assert other.remark.startswith("0 of 1 road compared")
+    # a road alone is the same test whatever its seed, and of several the one that passed counts
+    a_test(tmp_path, 7, "FAIL")
+    assert Gate(None, (), tmp_path).add("it", a_test(seed=9, outcome="FAIL")) == "FAIL, in the baseline PASS"
+
+
+def test_a_margin_is_nothing_to_go_by_at_a_collision(tmp_path: Path) -> None:
+    scene = "car ahead v=0"
+    a_test(tmp_path, outcome="FAIL", scene=scene, cause="collision", keep_driving=True)
+    worse = a_test(outcome="FAIL", scene=scene, cause="collision", margin=0.5, keep_driving=True)
+    assert Gate(None, (), tmp_path).add("it", worse) == ""

@@ -3,6 +3,7 @@
 import csv
 import json
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
@@ -92,3 +93,35 @@ def test_a_plan_of_a_campaign_has_the_points_of_a_standard_grid() -> None:
     assert "3 that lead to speeds below 0 are left out" in said
     origins = [row["origin"] for row in csv.DictReader(Path("c/results.csv").read_text().splitlines())]
     assert origins == [f"r157:free_driving ego={speed}" for speed in (5, 10, 15, 20)]
+
+
+@pytest.mark.usefixtures("no_workers")
+def test_scenario_and_criticality_stand_in_rows_tables_and_junit() -> None:
+    """The robot holds 50 km/h and hits who stands: the difference of the velocities is 50 km/h."""
+    name, words = "ncap:CCRs", ("--driver", "robot", "--seed", "1")
+    run = ("run", "--scenario", f"{name} impact=75", *words, "--no-plot")
+    done = invoke(*run, "--out", "r", "--junit", "r.xml")
+    assert done.exit_code == 0, done.output
+    (line,) = [each for each in done.stdout.splitlines() if each.startswith("1/1")]
+    assert "margin" not in line
+    assert f"  {name} impact=75  impact 50 km/h, TTC 0.0 s" in line
+    asked = ("--scenario", f"{name} impact=75", *words, "--junit", "c.xml")
+    done = invoke("campaign", *asked, "--out", "c")
+    assert done.exit_code == 0, done.output
+    with Path("c/results.csv").open() as file:
+        (row,) = csv.DictReader(file)
+    assert (row["scenario"], row["parameters"], row["margin_m"]) == (name, "impact=75", "")
+    assert (float(row["GAP"]), float(row["IMPACT"])) == (0.0, pytest.approx(50, abs=0.5))
+    for file in ("r.xml", "c.xml"):
+        (case,) = ElementTree.parse(file).getroot().iter("testcase")
+        told = {each.get("name"): each.get("value") for each in case.iter("property")}
+        assert (told["scenario"], told["parameters"], told["gap_m"]) == (name, "impact=75", "0")
+        assert float(told["impact_kmh"] or 0) == pytest.approx(50, abs=0.5)
+        assert "margin_m" not in told
+    shown = [invoke("show", place).stdout for place in ("r", "r/1", "c/c01", "c/c01/1")]
+    for text in shown:
+        assert f"{name} impact=75" in text
+        assert "impact 50 km/h" in text
+        assert "+1.750 m" not in text
+    one = json.loads(invoke("show", "--json", "r/1").stdout)
+    assert (one["scenario"], one["parameters"], one["gap_m"], one["margin_m"]) == (name, "impact=75", 0, None)

@@ -21,6 +21,8 @@ and, of a drive with others on the road, what its verdict says:
     COLLISIONS, NEAR_MISSES, BLOCKED, SPEEDING   numbers of these incidents
     AT_FAULT      whether the first collision was the tested car's fault, 1 or 0
     IMPACT        difference of the velocities in the first collision, km/h
+    GAP           least gap to somebody ahead in the same lane, m; 0 at a collision
+    TTC           least time to collision, s
 
 If a description states the number of turns, each turn has features of its own, in driving order: RADIUS_1,
 DEGREES_1, RADIUS_2, ...
@@ -108,6 +110,8 @@ def among_others(verdict: Verdict) -> dict[str, float]:
         "SPEEDING": "speeding",
     }
     out = {name: float(counts.get(kind, 0)) for name, kind in names.items()}
+    measured = {"GAP": verdict.least_gap, "TTC": verdict.least_ttc}
+    out |= {name: found for name, found in measured.items() if found is not None}
     if first is not None:
         out |= {"AT_FAULT": float(first.at_fault), "IMPACT": round(3.6 * first.impact_speed, DECIMALS)}
     return out

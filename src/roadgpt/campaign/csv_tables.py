@@ -7,7 +7,7 @@ cells.csv      one row per cell: its settings, the number of tests with each out
 """
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,8 +21,8 @@ from roadgpt.run.atomic import csv_text, write_lines, write_whole
 
 RESULTS, CELLS = "results.csv", "cells.csv"
 COLUMNS = (
-    "cell", "test", "batch", "origin", "seed", "outcome", "cause", "side", "length_m", "margin_m", "max_oob",
-    "beyond_m", "at_s_m", "own_share", "handed_to", "description",
+    "cell", "test", "batch", "origin", "scenario", "parameters", "seed", "outcome", "cause", "side",
+    "length_m", "margin_m", "max_oob", "beyond_m", "at_s_m", "own_share", "handed_to", "description",
 )  # fmt: skip
 AXES, PER_AXIS = ("MAX_CURV", "STD_SA"), 25
 """The feature map of a cell whose settings define no map: the axes, and the number of bins per axis."""
@@ -45,19 +45,25 @@ def write_tables(record: Record, folder: Path) -> None:
     """Writes both tables, row by row; raises OSError."""
     features = record.feature_names()
     with reading_store(record.path):
-        write_lines(folder / RESULTS, _lines(record.stream(EVERY), features))
+        by_name = {cell.name: cell for cell in record.cells()}
+        write_lines(folder / RESULTS, _lines(record.stream(EVERY), features, by_name))
     both = zip(record.cells(), cell_statuses(record), strict=True)
     cells = [_cell_row(record, cell, status) for cell, status in both]
     write_whole(folder / CELLS, csv_text(cells[0], [row.values() for row in cells]))
 
 
-def _lines(rows: Iterator[tuple[Any, ...]], features: Sequence[str]) -> Iterator[str]:
+def _lines(
+    rows: Iterator[tuple[Any, ...]], features: Sequence[str], cells: Mapping[str, Cell]
+) -> Iterator[str]:
     yield csv_text((*COLUMNS, *features), ())
     for cell, number, batch, origin, seed, given, *rest, found in rows:
+        test, _, parameters = cells[cell].scenario_of(origin).partition(" ")
+        if rest[MEASURED.index("cause")] == "collision":
+            rest[MEASURED.index("margin")] = None
         values = {name: float(value) for name, value in json_of(found).items()}
         named = (values.get(name) for name in features)
         own = seed if given else seed_of(seed, number)
-        yield csv_text((cell, number, batch, origin, own, *rest, *named), ())
+        yield csv_text((cell, number, batch, origin, test, parameters, own, *rest, *named), ())
 
 
 def _cell_row(record: Record, cell: Cell, status: CellStatus) -> dict[str, Any]:

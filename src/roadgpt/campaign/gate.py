@@ -11,7 +11,7 @@ import numpy as np
 import scipy
 
 from roadgpt.campaign.folder_record import open_record
-from roadgpt.campaign.model import NumberedTest
+from roadgpt.campaign.model import NumberedTest, Result
 from roadgpt.campaign.status import status_of
 from roadgpt.drive.loading import without_folder
 from roadgpt.errors import GateError, RoadGPTError, UsageError
@@ -20,6 +20,7 @@ from roadgpt.plural import plural
 from roadgpt.road import Road, World
 from roadgpt.road.world import oracle_limits
 from roadgpt.run import Outcome, Request, Run
+from roadgpt.verdict import Verdict
 
 LOSS = 0.1  # m; a road from files of two formats was driven with margins that differ by up to 0.041 m
 STATIONS = 33  # at which two roads are compared
@@ -32,6 +33,9 @@ class _Result(NamedTuple):
     margin: float | None
     settings: dict[str, Any]
     outline: Array
+    among: tuple[Any, ...]
+    """What makes it another test on the same road: where others are on it, name of the scenario, scene with
+    the values of its parameters, recorded tracks, and seed."""
 
 
 class Gate:
@@ -61,8 +65,7 @@ class Gate:
         self._counts[run.outcome if run else "ERROR"] += 1
         if run is None or run.road is None or self._baseline is None:
             return ""
-        margin = run.verdict.margin if run.verdict else None
-        return self._compare(name, _Result(run.outcome, margin, _settings(run.request), _outline(run.road)))
+        return self._compare(name, _result(run.outcome, run.verdict, run.request, run.road, run.seed))
 
     def add_folder(self, folder: Path) -> None:
         """Counts the tests of a campaign or a folder of runs."""
@@ -71,12 +74,16 @@ class Gate:
             self._compare(f"{folder}/{name}", result)
 
     def _compare(self, name: str, now: _Result) -> str:
-        alike = self._outlines.query_ball_point(now.outline, SAME, p=np.inf)
+        near = self._outlines.query_ball_point(now.outline, SAME, p=np.inf)
+        alike = [at for at in near if self._before[at].among == now.among]
         if not alike:
             return ""
         self._compared += 1
         self._found.update(alike)
-        before = min((self._before[at] for at in alike), key=lambda each: len(_differences(each, now)))
+        before = min(
+            (self._before[at] for at in alike),
+            key=lambda each: (len(_differences(each, now)), BEST_FIRST.index(each.outcome)),
+        )
         self._differences |= _differences(before, now)
         worse = ""
         if BEST_FIRST.index(now.outcome) > BEST_FIRST.index(before.outcome):
@@ -134,7 +141,17 @@ def _results(folder: Path) -> Iterator[tuple[NumberedTest, _Result]]:
                     if found := record.road(cell, its):
                         road, request = found
                         name = NumberedTest(cell.name, its.number)
-                        yield name, _Result(its.outcome, its.margin, _settings(request), _outline(road))
+                        yield name, _result(its.outcome, its, request, road, record.seed(its))
+
+
+def _result(
+    outcome: Outcome, found: Verdict | Result | None, request: Request, road: Road, seed: int
+) -> _Result:
+    setup, scene = request.setup, request.world.scene
+    among = (setup.scenario.partition(" ")[0], request.world.values()["scene"], Path(setup.tracks).name, seed)
+    is_among = setup.scenario or setup.tracks or scene.actors or scene.has_flow
+    margin = None if found is None or found.cause == "collision" else found.margin
+    return _Result(outcome, margin, _settings(request), _outline(road), among if is_among else ())
 
 
 def _outline(road: Road) -> Array:

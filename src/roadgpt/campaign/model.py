@@ -160,6 +160,10 @@ class Cell:
         grid = self.settings.get("grid", "nominal")
         return points_of(self.settings["scenario"], grid, not self.request.words)
 
+    def scenario_of(self, origin: str) -> str:
+        """Returns the scenario of a test, with its parameters, from where it comes; empty if it has none."""
+        return origin if "scenario" in self.settings else self.request.setup.scenario
+
     def of_test(self, proposal: Proposal) -> "Cell":
         """Returns the settings of one test: where scenarios are tested, its own is that of the proposal, and
         without a description its road the nominal one."""

@@ -31,8 +31,8 @@ MARKS = {"FAIL": "failure", "ERROR": "error"}
 COUNTED = {"FAIL": "failures", "ERROR": "errors", "INVALID": "skipped", "UNAVOIDABLE": "skipped"}
 LONGEST = 120  # letters of a suite's name
 IN_CASE = (
-    "words", "origin", "seed", "max_oob", "beyond_m", "margin_m", "length_m", "at_s_m", "side", "own_share",
-    "handed_to",
+    "words", "origin", "scenario", "parameters", "gap_m", "ttc_s", "impact_kmh", "seed", "max_oob",
+    "beyond_m", "margin_m", "length_m", "at_s_m", "side", "own_share", "handed_to",
 )  # fmt: skip
 UNKNOWN = "roads that were given"
 TIMES = (
@@ -61,6 +61,7 @@ def suites_of(folder: Path, worse: Mapping[str, str]) -> Iterator[Suite]:
                     own = {"words": cell.request.words, "seed": record.seed(result)}
                     own |= {"seconds": times.get(number, 0.0), "trace": str(errors.get(number, ""))}
                     own |= {"origin": result.proposal.origin if cell.name else None}
+                    own |= {"test": cell.scenario_of(result.proposal.origin)}
                     own |= {"name": Path(file).name or test, "worse": worse.get(f"{place}/{test}", "")}
                     rows.append(row_of(result, file, **own))
                 name, properties, _ = suite_of(cell.request, rows)

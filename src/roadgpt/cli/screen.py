@@ -77,6 +77,11 @@ class Row:
     own_share: float | None = None
     """Share of the way, 0 to 1, that the driver drove itself; None if it never handed over."""
     handed_to: str | None = None  # who drove where the car failed, if the driver had handed over
+    scenario: str = ""
+    parameters: str = ""  # of the scenario, where they are not the nominal ones
+    gap_m: float | None = None  # least distance to somebody ahead in the same lane; 0 at a collision
+    ttc_s: float | None = None  # least time to collision
+    impact_kmh: float | None = None  # difference of the velocities in the first collision
     at_fault: bool | None = None  # whether the first collision was the car's fault; None without one
     seconds: float = 0.0
     name: str = ""  # a shorter name, which is printed instead of ``file``; if empty, ``file`` is printed
@@ -105,6 +110,24 @@ class Row:
             return self.outcome
         return f"PASS ({outside(self.max_oob, self.beyond_m)})"
 
+    @property
+    def among_others(self) -> dict[str, Any]:
+        """What there is only of tests with others on the road, by name."""
+        names = ("scenario", "parameters", "gap_m", "ttc_s", "impact_kmh")
+        return {name: found for name in names if (found := getattr(self, name)) not in ("", None)}
+
+    @property
+    def test(self) -> str:
+        """The scenario with its parameters, as ``--scenario`` takes it."""
+        return f"{self.scenario} {self.parameters}".rstrip()
+
+    @property
+    def criticality(self) -> str:
+        """In words, how near the car came to others; empty if nobody was there or ever ahead of it."""
+        told = [] if self.impact_kmh is None else [f"impact {self.impact_kmh:.0f} km/h"]
+        told += [f"gap {self.gap_m:.1f} m"] if self.gap_m and not told else []
+        return ", ".join(told + ([] if self.ttc_s is None else [f"TTC {self.ttc_s:.1f} s"]))
+
     def to_json(self) -> str:
         """Returns the row as one line of JSON."""
         told = {name: _rounded(getattr(self, name)) for name in IN_JSON}
@@ -113,6 +136,7 @@ class Row:
             told["cost_usd"] = self.spent.cost
         if self.at_fault is not None:
             told["at_fault"] = self.at_fault
+        told |= {name: _rounded(found) for name, found in self.among_others.items()}
         if self.worse:
             told["worse"] = self.worse
         return json.dumps(told)
@@ -122,6 +146,7 @@ class Row:
         length = "" if self.length_m is None else f"{self.length_m:6.1f} m"
         margin = "" if self.margin_m is None else f"margin {metres(self.margin_m)}"
         line = f"{self.told:<{MOST_TOLD}} {length:>9}  {margin:<15}  {self.name or self.file}"
+        line += "".join(f"  {each}" for each in (self.test, self.criticality) if each)
         if self.own_share is not None:
             line += f"  drove {100 * self.own_share:.0f} % itself"
         if self.worse:
@@ -201,16 +226,25 @@ def row_of(run: "Run | Result", file: str = "", **more: Any) -> Row:
         more |= {"validation_message": run.validation_message, "findings": findings, "spent": run.spent}
         contact = run.verdict and run.verdict.first_contact
         more["at_fault"] = contact.at_fault if contact else None
+        more |= {"gap_m": run.verdict.least_gap, "ttc_s": run.verdict.least_ttc} if run.verdict else {}
+        more["impact_kmh"] = 3.6 * contact.impact_speed if contact else None
+        test = run.request.setup.scenario
         more |= {"words": run.words, "seed": run.seed, "trace": run.trace}
         # as tables of tests hold them
         more["seconds"] = round(run.seconds.design, 4) + round(run.seconds.drive, 4)
     else:
         found, is_valid, length = run, run.outcome not in ("INVALID", "ERROR"), run.length or None
         more["at_fault"] = bool(run.features["AT_FAULT"]) if "AT_FAULT" in run.features else None
+        of_features = {"gap_m": "GAP", "ttc_s": "TTC", "impact_kmh": "IMPACT"}
+        more |= {name: run.features.get(feature) for name, feature in of_features.items()}
+        test = more.pop("test", "")
     if found is not None:
         more |= {"max_oob": found.max_oob, "beyond_m": found.beyond, "margin_m": found.margin}
         more |= {"own_share": found.own_share, "handed_to": found.handed_to}
         more |= {"cause": found.cause, "at_s_m": found.at_s, "side": found.side}
+        if found.cause == "collision":
+            more["margin_m"] = None  # how far the car was from leaving its lane is nothing to go by
+    more["scenario"], _, more["parameters"] = test.partition(" ")
     return Row(file, run.outcome, run.description, is_valid, length_m=length, **more)
 
 

@@ -3,6 +3,7 @@
 import json
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
 from itertools import islice
 from pathlib import Path
 
@@ -24,10 +25,11 @@ from roadgpt.cli.roads import NamedRoad, roads_named
 from roadgpt.cli.screen import COLOURS, WIDEST, Row, driver_and_oracle, metres, row_of, spending
 from roadgpt.cli.streams import aligned, apart, duration, progress, resumable
 from roadgpt.errors import UsageError, command_line
+from roadgpt.plural import plural
 from roadgpt.road.world import oracle_in_words
-from roadgpt.run.folder import read_run, run_folder
+from roadgpt.run.folder import is_run, read_run, run_folder
 from roadgpt.run.model import Run, permissions
-from roadgpt.verdict.verdict import percent
+from roadgpt.verdict import JUDGEMENT, percent
 
 COMPARED = 500  # largest number of failures, evenly spread, that are grouped (if untested): under a second
 MOST_CELLS = 40  # largest number of cells that are shown one by one
@@ -193,9 +195,10 @@ def _cell_lines(place: Selection) -> Iterator[str]:
     yield from cell_lines([cell])
     yield driver_and_oracle([cell.driver], cell.oracle)
     with open_record(place.folder) as record:
+        own = record.cell(place.cell)
         for result in islice(record.results(place.cell), MOST_TESTS):
             name = place.of(NumberedTest(place.cell, result.number)).said
-            yield _line_of(row_of(result, name=name))
+            yield _line_of(row_of(result, name=name, test=own.scenario_of(result.proposal.origin)))
     if not cell.done:
         yield "no test has ended yet"
     elif cell.done > MOST_TESTS:
@@ -205,7 +208,8 @@ def _cell_lines(place: Selection) -> Iterator[str]:
 def _line_of(row: Row) -> str:
     margin = "" if row.margin_m is None else metres(row.margin_m)
     measured = f"{row.outcome:<{WIDEST}} {row.length_m or 0:>5.0f} m {margin:>9}"
-    return f"{row.file or row.name}  {measured}  {row.description}"
+    what = "; ".join(each for each in (row.test, row.criticality) if each)
+    return f"{row.file or row.name}  {measured}  {what}{': ' * bool(what)}{row.description}"
 
 
 def _run_of(named: NamedRoad) -> Iterator[str]:
@@ -240,11 +244,16 @@ def _run_lines(run: Run, again: Sequence[str]) -> Iterator[str]:
             f"up to {fastest:.0f} km/h"
         )
     if run.verdict is not None:
-        verdict, limits = run.verdict, run.world.limits
+        verdict, limits, row = run.verdict, run.world.limits, row_of(run)
+        margin = "" if row.margin_m is None else f", margin {metres(row.margin_m)}"
         yield (
             f"  verdict   at most {percent(verdict.max_oob)} of the car outside its lane, "
-            f"{verdict.beyond:.2f} m beyond the marking, margin {metres(verdict.margin)}"
+            f"{verdict.beyond:.2f} m beyond the marking{margin}"
         )
+        if row.test:
+            yield f"  scenario  {row.test}"
+        if row.criticality:
+            yield f"  others    {row.criticality}"
         yield f"  oracle    {oracle_in_words(limits.oracle)}"
     designing = run.designing
     if run.spent is not None:  # on language models
@@ -267,6 +276,37 @@ def _road_line(run: Run) -> str:
     tightest = f"tightest radius {1 / bend:.0f} m" if bend > 1e-6 else "straight"
     steep = float(samples.grade[np.abs(samples.grade).argmax()])
     return f"{run.length:.0f} m, {tightest}, {ups_and_downs(samples.z)} m in height, steepest {steep:+.1%}"
+
+
+def rejudged_lines(folders: Sequence[str], as_json: bool) -> Iterator[str]:
+    """Yields a line for each stored outcome of folders that would be another one today, or cannot be judged
+    again, and how many there are of each kind; or one JSON object for each test."""
+    from roadgpt.campaign.rejudging import rejudge
+
+    kinds, versions, lost, of_catalogue = Counter[str](), Counter[int](), 0, 0
+    for folder in folders:
+        for each in rejudge(Path(folder)):
+            name = str(folder) if is_run(Path(folder)) else f"{folder}/{each.name}"
+            if as_json:
+                yield json.dumps({**asdict(each), "name": name, "rules": JUDGEMENT})
+                continue
+            lost, of_catalogue = lost + (not each.today), of_catalogue + (not each.has_scene)
+            versions[each.version] += bool(each.today)
+            if each.is_other:
+                kinds[f"{each.stored} -> {each.today}"] += 1
+                yield f"{name}  {each.stored} -> {each.today}  {each.why}"
+            elif not each.today:
+                yield f"{name}  cannot be judged again: {each.why}"
+    if as_json:
+        return
+    drives, others = plural(versions.total(), "drive"), plural(kinds.total(), "outcome")
+    rules = " and ".join(f"{count:,} of version {version}" for version, count in sorted(versions.items()))
+    yield f"{drives} judged again by version {JUDGEMENT} of the rules" + f": {rules}" * bool(rules)
+    yield f"{others} would be others today" + f", {lost:,} cannot be judged again" * bool(lost)
+    yield from (f"  {count:>5,}  {kind}" for kind, count in kinds.most_common())
+    if of_catalogue:
+        told = plural(of_catalogue, "test")
+        yield f"the scene of {told} is that of today's catalogue: a campaign of scenarios stores none"
 
 
 def _folder_lines(folder: Path) -> Iterator[str]:

@@ -49,6 +49,7 @@ __all__ = [
     "Setup",
     "brief_of",
     "check_parts",
+    "judged",
     "perform",
     "prove",
     "read_run",
@@ -241,9 +242,7 @@ def _driven(run: Run, despite_findings: bool = False) -> Run:
         recording = recording_of(setup)
         tracks = None if recording is None else recording.on(run.road, run.world)
         drive = simulate(run.road, run.world, driver, run.seed, setup.simulator, setup.keep_driving, tracks)
-        verdict = judge(run.road, drive, run.world)
-        run = replace(run, outcome=verdict.outcome, description=_sentence(verdict, drive))
-        run = replace(run, drive=drive, verdict=verdict)
+        run = judged(replace(run, drive=drive))
     except PartError:
         raise
     except SceneError as error:
@@ -258,6 +257,14 @@ def _driven(run: Run, despite_findings: bool = False) -> Run:
         driver_files=getattr(driver, "all_files", dict)(),
         seconds=replace(run.seconds, drive=time.perf_counter() - begun),
     )
+
+
+def judged(run: Run) -> Run:
+    """Returns a Run that has a road and a drive with the verdict of today's rules."""
+    assert run.road is not None
+    assert run.drive is not None
+    verdict = judge(run.road, run.drive, run.world)
+    return replace(run, outcome=verdict.outcome, description=_sentence(verdict, run.drive), verdict=verdict)
 
 
 def _sentence(verdict: Verdict, drive: Drive) -> str:

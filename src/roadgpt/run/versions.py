@@ -2,6 +2,7 @@
 
     roadgpt [source]      RoadGPT's version, and a digest of its source
     python, numpy, ...    versions of Python and of libraries, and the platform
+    judgement             the version of the rules by which drives are judged, ``verdict.JUDGEMENT``
     weights               a digest of the weights of the reader
     plug-ins              those of other packages: distribution, version, and a digest of their source
     tracks FILE           the digest of the recorded tracks of others
@@ -26,6 +27,7 @@ from roadgpt.drive.isolation import driver_of
 from roadgpt.errors import UsageError
 from roadgpt.reading import ABSENT, digest
 from roadgpt.run.model import Request, Setup
+from roadgpt.verdict import JUDGEMENT
 
 LIBRARIES = "numpy", "scipy", "pydantic"
 FILE = "driver:"
@@ -49,6 +51,7 @@ def versions_of(setups: Sequence[Setup], driver: Any = None, generators: Iterabl
     found = {"roadgpt": __version__, "roadgpt source": _source(Path(__file__).parents[1])}
     found |= {"python": platform.python_version(), "machine": f"{platform.system()} {platform.machine()}"}
     found |= {name: _version(name) for name in LIBRARIES + (("mujoco-core", "numba") if driven else ())}
+    found |= {"judgement": str(JUDGEMENT)} if driven else {}
     for name in {setup.simulator for setup in driven} & {*plugins.names("settings")}:
         settings = plugins.find("settings", name)
         found |= {each: _version(each) for each in settings.libraries} | {name: settings.of().summary()}

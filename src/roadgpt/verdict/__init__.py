@@ -19,6 +19,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from roadgpt.verdict.verdict import (
+    JUDGEMENT,
     SEVERITIES,
     Cause,
     Contact,
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from roadgpt.verdict.oracle import Oracle, consult
 
 __all__ = [
+    "JUDGEMENT",
     "SEVERITIES",
     "Cause",
     "Contact",

@@ -136,6 +136,7 @@ def judge(
     handed_to = drive.handed_to(step) if cause else None
     outcome: Outcome = "FAIL" if cause else "PASS"
     avoided_by, avoided, excuse = None, "", ""
+    gap, ttc = _least(road, drive, world, incidents or ())
     is_yielding = handed_to and cause in GIVES_WAY  # what came of it may be a matter of the brakes
     hit = _contact_of(incidents or (), "collision", 0.0) if is_yielding or cause == "collision" else None
     if hit is not None:
@@ -177,10 +178,27 @@ def judge(
         at_time=time if cause else None,
         side=side,
         incidents=incidents,
+        least_gap=gap,
+        least_ttc=ttc,
         own_share=drive.shares.get(drive.driver),
         avoided_by=avoided_by,
         handed_to=handed_to,
     )
+
+
+def _least(
+    road: "Road", drive: "Drive", world: "World", incidents: Sequence[Incident]
+) -> tuple[float | None, float | None]:
+    """Returns the least gap in metres and the least time to collision in seconds up to the first contact."""
+    if drive.others is None:
+        return None, None
+    from roadgpt.verdict.measures import measure
+
+    measured, hit = measure(road, drive, world), _contact_of(incidents, "collision", 0.0)
+    before = measured.time <= (np.inf if hit is None else hit.at_time)
+    least = [float(each[before].min(initial=np.inf)) for each in (measured.gap, measured.ttc)]
+    gap, ttc = (round(each, 3) if np.isfinite(each) else None for each in least)
+    return gap if hit is None else 0.0, ttc
 
 
 def most_beyond(road: "Road", drive: "Drive", world: "World") -> float:

@@ -8,7 +8,7 @@ terminal output. A car that passes a test may have been partly outside its lane,
 import math
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from typing import Any, ClassVar, Literal, Self, get_args
 
 from pydantic import ConfigDict, ValidationError
@@ -16,6 +16,9 @@ from pydantic import ConfigDict, ValidationError
 from roadgpt.errors import UsageError
 from roadgpt.reading import strictly
 
+JUDGEMENT = 2
+"""The version of the rules by which drives are judged, raised when the same drive may be judged otherwise. It
+stands in the versions of every record; a record without it was judged by version 1."""
 Outcome = Literal["PASS", "FAIL", "UNAVOIDABLE"]
 """UNAVOIDABLE: a collision that no driver could have avoided, which is no failure."""
 Cause = Literal[
@@ -142,6 +145,12 @@ class Verdict:
 
     A drive that passed may have incidents, too, because a tyre off the road fails no test.
     """
+    least_gap: float | None = None
+    """The least distance in metres, up to the first contact, from bumper to bumper to somebody ahead in the
+    same lane; 0 at a collision, None if nobody ever was ahead in the same lane."""
+    least_ttc: float | None = None
+    """The least time to collision in seconds, as ``roadgpt.verdict.measure`` returns it, up to the first
+    contact; None if there was none."""
     own_share: float | None = None
     """The share of the way, 0 to 1, that the driver drove itself; None if it never handed over."""
     avoided_by: tuple[str, ...] | None = None
@@ -180,10 +189,10 @@ class Verdict:
     def to_json(self) -> dict[str, Any]:
         """Returns the fields and ``kept`` as JSON data, for ``Verdict.from_json``.
 
-        The fields ``incidents``, ``own_share``, ``avoided_by`` and ``handed_to`` are left out where they are
-        None.
+        The fields from ``incidents`` on are left out where they are None.
         """
-        optional = {"incidents", "own_share", "avoided_by", "handed_to"}
+        names = [each.name for each in fields(self)]
+        optional = names[names.index("incidents") :]
         data = {key: value for key, value in asdict(self).items() if value is not None or key not in optional}
         if self.incidents is not None:
             data["incidents"] = [each.to_json() for each in self.incidents]
@@ -200,8 +209,7 @@ class Verdict:
             UsageError: a field is missing or unknown, or its value is invalid.
         """
         try:
-            fields = {key: value for key, value in data.items() if key != "kept"}
-            return strictly(cls, fields)
+            return strictly(cls, {key: value for key, value in data.items() if key != "kept"})
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
             said = f"{'.'.join(map(str, first['loc']))}: {first['msg']}"

@@ -23,12 +23,13 @@ MOST = 2  # roads side by side
 SHOW_OPTIONS = (
     Argument("folders...", "RUN...", "Name the folder of a run, a folder of runs, or a campaign."),
     *options.CHOICES,
+    Option("--rejudge", "Judge stored drives again: which outcomes would be others today, and why.", bool),
     options.json_option("Print one JSON object for each campaign or road.", heading=Heading.OUTPUT),
 )
 
 
 @click.command(cls=GroupedCommand, params=[*SHOW_OPTIONS])
-def show(folders: tuple[str, ...], as_json: bool, **rest: Any) -> None:
+def show(folders: tuple[str, ...], as_json: bool, rejudge: bool, **rest: Any) -> None:
     """Summarise a run, a folder of runs or a campaign, and print the command that repeats it.
 
     RUN is a run, such as DIR/runs/0001 or DIR/test.0001.json; the folder DIR that holds the runs; a campaign;
@@ -36,10 +37,17 @@ def show(folders: tuple[str, ...], as_json: bool, **rest: Any) -> None:
 
     \b
     roadgpt show roadgpt-runs/hairpins-7
-    roadgpt show CAMPAIGN --failures"""
-    from roadgpt.cli.summary import json_lines, text_lines
+    roadgpt show CAMPAIGN --failures
+    roadgpt show --rejudge DIR"""
+    from roadgpt.cli.summary import json_lines, rejudged_lines, text_lines
 
     choice = options.choice_of(rest)
+    if rejudge:
+        if choice:
+            raise UsageError(f"--rejudge judges all drives of a folder again; leave out --{choice}")
+        for line in rejudged_lines(folders, as_json):
+            click.echo(line)
+        return
     for folder in folders:
         for line in (json_lines if as_json else text_lines)(folder, choice):
             click.echo(line)
