@@ -48,8 +48,8 @@ def test_cells_count_what_the_results_say(tmp_path: Path) -> None:
     """Failing cells are those of failures alone; the least margin is that of drives that kept their lane."""
     places = [("FAIL", 0.01, -0.02), ("FAIL", 0.011, -0.5), ("FAIL", 0.05, -0.03), ("PASS", 0.03, 0.4)]
     places += [("PASS", 0.06, 0.2), ("INVALID", 0.02, None), ("ERROR", 0.02, None), ("VALID", 0.02, None)]
-    places += [("PASS", 0.03, 0.3), ("INVALID", 0.02, None)]
-    outside = [1.0, 0.96, 0.97, 0.0, 0.7, None, None, None, 0.3, None]
+    places += [("PASS", 0.03, 0.3), ("INVALID", 0.02, None), ("NOT TESTED", 0.02, 0.1)]
+    outside = [1.0, 0.96, 0.97, 0.0, 0.7, None, None, None, 0.3, None, 0.9]
     made = [Proposal(a_design(number), number, "draft") for number in range(len(places))]
     done = [
         Result(
@@ -83,11 +83,12 @@ def test_cells_count_what_the_results_say(tmp_path: Path) -> None:
         "generator": "search",
         "goal": "",
         "seed": str(request.seed),
-        "tests": "10",
-        "valid": "7",
+        "tests": "11",
+        "valid": "8",
         "passed": "3",
         "failed": "3",
         "unavoidable": "0",
+        "not_tested": "1",
         "invalid": "2",
         "in_error": "1",
         "not_driven": "1",

@@ -94,7 +94,7 @@ def test_a_rule_that_is_none_is_refused(rule: str) -> None:
     assert "give fail, invalid, error or N%" in done.stderr
 
 
-OUTCOMES = st.lists(st.sampled_from(["PASS", "FAIL", "INVALID", "ERROR", "VALID"]), max_size=30)
+OUTCOMES = st.lists(st.sampled_from(["PASS", "FAIL", "NOT TESTED", "INVALID", "ERROR", "VALID"]), max_size=30)
 
 
 @given(OUTCOMES, st.sets(st.sampled_from(["FAIL", "INVALID", "ERROR"])), st.none() | st.integers(0, 1000))
@@ -106,7 +106,8 @@ def test_the_gate_fails_exactly_as_the_guide_defines(
     for number, outcome in enumerate(outcomes):
         gate.add(str(number), Run(Request(), number, 0, outcome))  # type: ignore[arg-type]
     driven = [outcome for outcome in outcomes if outcome in ("PASS", "FAIL")]
-    is_broken = bool(named & {*outcomes}) or (not driven and ("FAIL" in named or per_mille is not None))
+    is_broken = "INVALID" in named and "NOT TESTED" in outcomes
+    is_broken |= bool(named & {*outcomes}) or (not driven and ("FAIL" in named or per_mille is not None))
     if per_mille is not None and driven:
         is_broken |= Fraction(driven.count("FAIL"), len(driven)) > Fraction(per_mille, 1000)
     if is_broken:
@@ -125,7 +126,7 @@ def a_run(
     run = replace(driven(), index=number, road=Road.through(points), outcome=outcome)
     assert run.verdict is not None
     judged = replace(run.verdict, margin=margin, outcome=outcome)
-    run = replace(run, verdict=judged if outcome in ("PASS", "FAIL") else None)
+    run = replace(run, verdict=judged if outcome not in ("INVALID", "ERROR", "VALID") else None)
     request = Request(world=world or World(), setup=setup or Setup())
     run = replace(run, request=request)
     if folder is not None:
@@ -181,6 +182,8 @@ def test_every_form_of_a_road_is_that_road() -> None:
     [
         ("PASS", "FAIL", True), ("PASS", "INVALID", True), ("PASS", "ERROR", True), ("FAIL", "ERROR", True),
         ("FAIL", "PASS", False), ("ERROR", "FAIL", False), ("FAIL", "FAIL", False), ("PASS", "VALID", True),
+        ("PASS", "NOT TESTED", True), ("UNAVOIDABLE", "NOT TESTED", True), ("NOT TESTED", "PASS", False),
+        ("NOT TESTED", "FAIL", True), ("FAIL", "NOT TESTED", False),
     ],
 )  # fmt: skip
 def test_worse_outcomes_are_worse(tmp_path: Path, before: str, after: str, is_worse: bool) -> None:

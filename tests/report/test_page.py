@@ -7,13 +7,16 @@ import re
 import xml.etree.ElementTree as ET
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
 from matplotlib.image import imread
 
+from roadgpt.cli.screen import COLOURS
 from roadgpt.drive import COLUMNS, Box, Columns, Drive
 from roadgpt.errors import RoadGPTError
+from roadgpt.report.canvas import OUTCOMES
 from roadgpt.report.overview import Thumbnail
 from roadgpt.report.page import STYLE, csv_of, html_of, latex_of, write
 from roadgpt.report.page.charts import AxisRange, Share, bars, forest, heat, is_map, lines, palette
@@ -31,6 +34,7 @@ from roadgpt.report.page.model import (
     linked,
 )
 from roadgpt.road import CrossSection, Design, Road, Segment, World, build
+from roadgpt.run import Outcome
 
 NASTY = "<script>alert(1)</script> & \"100 %\" | $x_1$ \\ {y} 'z'"
 TABLE = Table(
@@ -219,6 +223,20 @@ def test_bars_are_as_high_as_their_counts() -> None:
     (mark,) = [each for each in styled(svg, "path", "soft") if "dasharray" in each.get("style", "")]
     axis = [corners(each) for each in styled(svg, "path", "soft") if np.ptp(corners(each)[:, 0]) > 100]
     assert corners(mark)[0, 0] == pytest.approx(axis[0][:, 0].mean()), "halfway from 0 to 3"
+
+
+def test_every_outcome_has_its_colour_on_pages_in_pictures_and_on_terminals() -> None:
+    roads = [
+        Thumbnail(n, each, np.array([[0.0, 0.0], [9.0, 9.0]])) for n, each in enumerate(get_args(Outcome))
+    ]
+    svg = gallery(roads, 250.0, "label")
+    used, defined = (
+        set(re.findall(pattern, text))
+        for pattern, text in ((r"var\((--[^)]*)\)", svg), (r"(--[\w-]+):", STYLE.read_text(encoding="utf-8")))
+    )
+    assert used <= defined
+    assert {*get_args(Outcome)} <= {*OUTCOMES} & {*COLOURS}
+    assert len({OUTCOMES[each] for each in get_args(Outcome)}) == len(get_args(Outcome))
 
 
 def test_every_road_of_a_gallery_leads_somewhere() -> None:

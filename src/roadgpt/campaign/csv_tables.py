@@ -35,6 +35,7 @@ OUTCOMES = {
     "PASS": "passed",
     "FAIL": "failed",
     "UNAVOIDABLE": "unavoidable",
+    "NOT TESTED": "not_tested",
     "INVALID": "invalid",
     "ERROR": "in_error",
     "VALID": "not_driven",

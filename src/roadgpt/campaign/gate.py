@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_args
 
 import numpy as np
 import scipy
@@ -25,7 +25,7 @@ from roadgpt.verdict import Verdict
 LOSS = 0.1  # m; a road from files of two formats was driven with margins that differ by up to 0.041 m
 STATIONS = 33  # at which two roads are compared
 SAME = 0.001  # m; the formats of road files keep a road to 0.0001 m
-BEST_FIRST: tuple[Outcome, ...] = ("PASS", "VALID", "UNAVOIDABLE", "FAIL", "INVALID", "ERROR")
+BEST_FIRST: tuple[Outcome, ...] = get_args(Outcome)
 
 
 class _Result(NamedTuple):
@@ -112,7 +112,8 @@ class Gate:
     def sentence(self) -> str:
         """What fails the gate; empty if nothing does."""
         counts, total = self._counts, plural(self._counts.total(), "road")
-        broken = [f"{counts[it]:,} of {total} {it}" for it in BEST_FIRST if it in self._rules and counts[it]]
+        rules = [*self._rules, *["NOT TESTED"] * ("INVALID" in self._rules)]
+        broken = [f"{counts[it]:,} of {total} {it}" for it in BEST_FIRST if it in rules and counts[it]]
         driven, failed = counts["PASS"] + counts["FAIL"], counts["FAIL"]
         shares = [rule.removesuffix("%") for rule in self._rules if rule.endswith("%")]
         for share in shares:

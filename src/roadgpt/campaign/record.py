@@ -29,7 +29,7 @@ from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, get_args
 
 import numpy as np
 from pydantic import TypeAdapter
@@ -47,7 +47,7 @@ from roadgpt.road import Design, Road
 from roadgpt.run import Request, Run
 from roadgpt.run.atomic import refuse_links, to_bytes
 from roadgpt.run.folder import keep_ground
-from roadgpt.run.model import permissions
+from roadgpt.run.model import Outcome, permissions
 from roadgpt.run.store import connected
 from roadgpt.run.versions import Versions, joined, still
 from roadgpt.verdict import Verdict, judge
@@ -187,7 +187,7 @@ OF_COLUMN = {
     "tests.number": "{0} <= 10000000",
     **{f"batches.{name}": "{0} <= 10000000" for name in ("batch", "first", "n", "left")},
     "tests.batch": "{0} <= 10000000",
-    "tests.outcome": "{0} IN ('PASS', 'FAIL', 'UNAVOIDABLE', 'INVALID', 'ERROR', 'VALID')",
+    "tests.outcome": "{0} IN " + str(get_args(Outcome)),
     "tests.side": "{0} IN ('left', 'right')",
     "traces.file": "{0} GLOB '[0-9]*.npz' AND {0} NOT GLOB '*[^0-9npz.]*'",
 }
@@ -651,7 +651,7 @@ def refusals(folder: Path, store: Record | None = None) -> Iterator[None]:
 def _verdict_of(road: Road, drive: Drive, cell: Cell, result: Result) -> Verdict | None:
     """Judges the stored drive, and then replaces values of the verdict by those that the campaign stored,
     because the drive's rounded positions may give others. Returns None if the test was not judged."""
-    if result.outcome not in ("PASS", "FAIL", "UNAVOIDABLE") or result.margin is None:
+    if result.margin is None:
         return None
     step = len(drive) - 1
     if result.at_s is not None and result.cause in DEPARTURES:

@@ -2,7 +2,9 @@
 
     PASS, VALID    a test that passed
     FAIL           <failure>: the car failed on a road that the rules allow
-    INVALID        <skipped>: the road breaks a rule, so it was not driven
+    INVALID        <skipped>: the road breaks a rule, so it was not driven, or its scene cannot happen
+    NOT TESTED     <skipped>: what the scene prescribes did not happen, for the driver's speed
+    UNAVOIDABLE    <skipped>: a collision that no careful driver could have avoided
     ERROR          <error>: a driver or simulator failed, or no road could be designed
 
 JUnit XML has no standard; the file has the elements that Jenkins, GitLab, GitHub, Azure and CircleCI read:
@@ -28,7 +30,8 @@ Suite = tuple[str, Properties, Sequence[Row]]
 """Tests with the same description and settings: a name, the settings, and the rows of all tests."""
 
 MARKS = {"FAIL": "failure", "ERROR": "error"}
-COUNTED = {"FAIL": "failures", "ERROR": "errors", "INVALID": "skipped", "UNAVOIDABLE": "skipped"}
+SKIPPED = ("INVALID", "NOT TESTED", "UNAVOIDABLE")
+COUNTED = {"FAIL": "failures", "ERROR": "errors", **dict.fromkeys(SKIPPED, "skipped")}
 LONGEST = 120  # letters of a suite's name
 IN_CASE = (
     "words", "origin", "scenario", "parameters", "gap_m", "ttc_s", "impact_kmh", "seed", "max_oob",

@@ -647,9 +647,9 @@ EXPORT = formats_option(
 )
 _gate = partial(Option, heading=Heading.GATE, is_rare=True)
 GATE = (
-    _gate("--fail-on", "Exit status 6 if a road is FAIL, INVALID or ERROR, or if more than N % of the driven "
-          "roads FAIL.", listed(_gate_rule), metavar="fail|invalid|error|N%,...", multiple=True,
-          callback=flat),
+    _gate("--fail-on", "Exit status 6 if a road is FAIL, INVALID (or NOT TESTED) or ERROR, or if more than "
+          "N % of the driven roads FAIL.", listed(_gate_rule), metavar="fail|invalid|error|N%,...",
+          multiple=True, callback=flat),
     _gate("--baseline", "Exit status 6 if a road has a worse result than in this folder.", folder),
     _gate("--margin-loss", "Loss of margin that is not worse than the baseline, m. [default: 0.1]",
           measure(0, 100)),

@@ -32,12 +32,15 @@ COLOURS = {
     "PASS (mostly outside)": "bright_red",
     "VALID": "green",
     "UNAVOIDABLE": "blue",
+    "NOT TESTED": "bright_black",
     "FAIL": "red",
     "INVALID": "cyan",
     "ERROR": "magenta",
 }
 """Colours of outcomes on a terminal, from the best outcome to the worst."""
 WIDEST = max(len(name) for name in (*COLOURS, "FAIL (out of lane)"))
+UNHAPPENED = ("it never happened that", "avoided before it began")
+"""Of which descriptions a line of a result tells more than the outcome."""
 MOST_TOLD = len("PASS (100 % out, 10.00 m)")
 IN_JSON = (
     "file", "is_valid", "validation_message", "findings", "test_outcome", "description", "max_oob",
@@ -151,11 +154,8 @@ class Row:
             line += f"  drove {100 * self.own_share:.0f} % itself"
         if self.worse:
             line += f"  worse: {self.worse}"
-        if (
-            self.test_outcome in ("INVALID", "ERROR")
-            or self.at_fault is not None
-            or "it never happened that" in self.description
-        ):
+        is_told = self.test_outcome in ("NOT TESTED", "INVALID", "ERROR") or self.at_fault is not None
+        if is_told or any(each in self.description for each in UNHAPPENED):
             return f"{line}  {self.description.removeprefix(f'{self.file}: ')}"
         if not self.findings:
             return line
@@ -341,9 +341,7 @@ class Screen:
         for outcome, count, share, least, most in summary(self.rows):
             told = click.style(f"{outcome:<{WIDEST}}", fg=colour_of(outcome))
             _show(f"{told} {count:>7} {share:>7}  {least:>12}  {most:>18}")
-        despite = sum(
-            bool(row.findings) for row in self.rows if row.test_outcome in ("PASS", "FAIL", "UNAVOIDABLE")
-        )
+        despite = sum(bool(row.findings) and row.max_oob is not None for row in self.rows)
         if despite:
             _show(f"driven despite findings of the rules: {despite} (-v tells all of them)")
         _show(f"{self._number()} roads in {self.seconds:.1f} s ({self._rate():.1f} roads/s)")

@@ -2,13 +2,14 @@
 of them."""
 
 import math
+from collections.abc import Sequence
 from itertools import repeat
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.brief.scene import VEHICLES
+from roadgpt.brief.scene import VEHICLES, Scene
 from roadgpt.brief.visibility import visual_range
 from roadgpt.compiled import bound, compiled, inlined
 from roadgpt.drive.drive import COLUMNS, Box, FloatArray
@@ -16,7 +17,7 @@ from roadgpt.drive.view import LightAhead, Other, Others
 from roadgpt.ground.sight import Horizon, is_behind_land
 from roadgpt.network.landscape import horizon_around
 from roadgpt.network.lanes import HEADROOM
-from roadgpt.traffic import STEP, TestedCar, Traffic
+from roadgpt.traffic import STEP, Actor, TestedCar, Traffic
 from roadgpt.traffic.actor import bodies
 from roadgpt.traffic.boxes import part_inside, touch
 
@@ -165,6 +166,20 @@ def look(
     return in_sight(states, looks, eye, near, horizon, order, seen, count, SEEN), touches
 
 
+def heights_along(road: "Road") -> FloatArray:
+    """Returns points of a road every SPACING metres, or none if it is flat, so that it hides nobody."""
+    line = road.at(np.arange(0.0, road.length, SPACING))
+    is_hilly = np.abs(np.diff(line[:, 2], 2)).max(initial=0.0) > FLAT
+    return np.ascontiguousarray(line if is_hilly else line[:0])
+
+
+def looks_of(actors: Sequence[Actor], scene: Scene) -> FloatArray:
+    """Returns how somebody looks to drivers, as ``look_around`` takes it."""
+    reach = [min(SEEN, visual_range(scene, each.kind) + each.size.length / 2) for each in actors]
+    looks = [(*each.size, each.kind in VEHICLES, far) for each, far in zip(actors, reach, strict=True)]
+    return np.array(looks).reshape(-1, 5)
+
+
 class Company:
     """The others on the road during one drive."""
 
@@ -180,9 +195,7 @@ class Company:
         self._scene, self._samples = world.scene, 0
         self._lights_reach = visual_range(world.scene, "lights")
         self._kinds: list[str] = []
-        line = road.at(np.arange(0.0, road.length, SPACING))
-        is_hilly = np.abs(np.diff(line[:, 2], 2)).max(initial=0.0) > FLAT
-        self._heights = np.ascontiguousarray(line if is_hilly else line[:0])
+        self._heights = heights_along(road)
         self._horizon = horizon_around(road, world)
         self._outline = np.array([box.length, box.width, box.ahead, box.height])
         self._looks = none = np.empty((0, 5))
@@ -215,9 +228,7 @@ class Company:
         self._samples += 1
         if came := self._traffic.actors[len(self._kinds) :]:
             self._kinds += [each.kind for each in came]
-            reach = [min(SEEN, visual_range(self._scene, each.kind) + each.size.length / 2) for each in came]
-            looks = [(*each.size, each.kind in VEHICLES, far) for each, far in zip(came, reach, strict=True)]
-            self._looks, count = np.vstack([self._looks, looks]), len(self._kinds)
+            self._looks, count = np.vstack([self._looks, looks_of(came, self._scene)]), len(self._kinds)
             self._found = np.empty((count, 5)), np.empty(count, np.int64), np.empty((count, 7))
 
     def bodies(self, time: float) -> "list[Body]":

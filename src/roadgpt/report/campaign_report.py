@@ -117,6 +117,10 @@ def _summary(record: Record, first: Request, status: Status, cells: Sequence[Cel
     out = [f"{status.done:,} tests: {told or 'nothing yet'}."]
     if apart := counts.get("UNAVOIDABLE", 0):
         out.append(f"{plural(apart, 'collision')} no careful driver could have avoided: counted apart.")
+    if untested := counts.get("NOT TESTED", 0):
+        out.append(
+            f"{plural(untested, 'test')} NOT TESTED: the driver was not as fast as the scene prescribes."
+        )
     if driven:
         out.append(f"The car failed on {share_of(failed, driven)} of the roads that were driven.")
         if other := sum(cell.handed_over for cell in status.cells):

@@ -45,6 +45,7 @@ OUTCOMES = {
     **{f"PASS ({name})": SEVERE[name] for name in SEVERITIES[1:]},
     "FAIL": VERMILLION,
     "UNAVOIDABLE": SKY,
+    "NOT TESTED": INK,
     "INVALID": SOFT,
     "ERROR": PURPLE,
     "VALID": BLUE,

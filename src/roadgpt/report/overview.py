@@ -51,7 +51,7 @@ KEY = 0.92  # inches, from the top down to the key to the signs
 PAD, FOOT, BAR = 0.1, 0.22, 0.4  # inches beside and under a road; of the side: the longest bar of a scale
 SHORTEST = 30.0  # m that a map shows at least
 PLACE, OUTSIDE, DISTANCE, SHARE = map(FIELDS.index, ("pos", "is_oob", "oob_distance", "oob_percentage"))
-STYLES = {"INVALID": (0, (3, 1.5)), "ERROR": (0, (1, 1))}
+STYLES = {"NOT TESTED": (0, (6, 1.5)), "INVALID": (0, (3, 1.5)), "ERROR": (0, (1, 1))}
 FAR_IN = Normalize(-1.0, 1.0)  # m; about the share of the car that is outside: all, half, nothing
 IN_LANE = LinearSegmentedColormap.from_list("in lane", [VERMILLION, ORANGE, YELLOW, GREEN])
 

@@ -22,9 +22,10 @@ if TYPE_CHECKING:
     from roadgpt.drive import Drive
     from roadgpt.verdict import Verdict
 
-Outcome = Literal["PASS", "FAIL", "UNAVOIDABLE", "INVALID", "ERROR", "VALID"]
-"""The outcome of a Run. UNAVOIDABLE: a collision that no careful driver could have avoided, which is no
-failure. VALID: the road breaks no rule and was not driven."""
+Outcome = Literal["PASS", "VALID", "UNAVOIDABLE", "NOT TESTED", "FAIL", "INVALID", "ERROR"]
+"""The outcome of a Run, from the best to the worst. UNAVOIDABLE: a collision that no careful driver could
+have avoided, which is no failure. NOT TESTED: what the scene prescribes did not happen, because the driver
+was not as fast as it prescribes. VALID: the road breaks no rule and was not driven."""
 SEED_BITS = 53  # so that a seed survives every JSON reader
 
 

@@ -260,8 +260,8 @@ class Act:
         self.ahead: tuple[float, float] | None = None
         """How far it is to who is ahead of it in its lane, in metres, and how fast that moves along it."""
         self.pull, self.begun = CHANGE, 0
-        self.unseen: Deed | None = None
-        """The first action that began when it was gone."""
+        self.shown = set[int]()
+        """The numbers of the actions that it did while it was there."""
         self.phases: list[Phase] = []
         self.clock, self.slid, self.slope = 0.0, 0.0, 0.0
         self.slide: Slide | None = None
@@ -545,11 +545,17 @@ class Act:
             self._go(wait)
             left -= wait
             self.begun += 1
-            self.unseen = self.unseen or (deed if self.is_gone else None)
             self._tell("with")
             self.phases = self._phases(deed)
+            self._show()
             self._enter()
         self._go(left)
+        if self.phases:
+            self._show()
+
+    def _show(self) -> None:
+        if self.begun and self.state() is not None:
+            self.shown.add(self.begun - 1)
 
     def _tell(self, word: str) -> None:
         if not self.copy:

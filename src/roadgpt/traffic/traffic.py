@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from roadgpt.road import Road, World
     from roadgpt.traffic.lights import Lights
 
+NEVER = "it never happened that"
+
 
 class Stage(NamedTuple):
     """What a mover is made with."""
@@ -120,6 +122,13 @@ class Traffic:
         """Returns the states at a time between 0 and that of the last sample, shape (actors, 5)."""
         now, after, share = self.around(time)
         return np.asarray((1 - share) * now + share * after) if share else now
+
+    @property
+    def happened(self) -> dict[str, float]:
+        """What of the scene has begun, in words, and the station in metres along its road where the tested
+        car was then."""
+        each = (getattr(mover, "happened", {}) for mover, _ in self._movers)
+        return {did: s for found in each for did, s in found.items()}
 
     @property
     def missed(self) -> tuple[str, ...]:

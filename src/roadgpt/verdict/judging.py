@@ -163,7 +163,13 @@ def judge(
     description += f"; {avoided}" * bool(avoided)
     if cause == "collision" and contact is not None:
         s, (x, y), time = contact.at_s, contact.at_xy, contact.at_time
-    description += "".join(f"; {each}" for each in drive.missed)
+    if cause is None and drive.missed:
+        from roadgpt.verdict.happened import told
+
+        outcome, why = told(road, drive, world)
+        description = f"{description}; {why}" if outcome == "PASS" else f"{why}; {description}"
+    else:
+        description += "".join(f"; {each}" for each in drive.missed)
     return Verdict(
         outcome=outcome,
         cause=cause,

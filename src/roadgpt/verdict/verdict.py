@@ -19,8 +19,9 @@ from roadgpt.reading import strictly
 JUDGEMENT = 2
 """The version of the rules by which drives are judged, raised when the same drive may be judged otherwise. It
 stands in the versions of every record; a record without it was judged by version 1."""
-Outcome = Literal["PASS", "FAIL", "UNAVOIDABLE"]
-"""UNAVOIDABLE: a collision that no driver could have avoided, which is no failure."""
+Outcome = Literal["PASS", "UNAVOIDABLE", "NOT TESTED", "FAIL", "INVALID"]
+"""UNAVOIDABLE: a collision that no driver could have avoided, which is no failure. NOT TESTED, INVALID: the
+car kept its lane, but what the scene prescribes did not happen: for its driver alone, or for any."""
 Cause = Literal[
     "out of lane", "fell", "rolled", "crashed", "sank", "stuck", "timeout", "collision", "wrong turn",
     "wrong way", "stop line",

@@ -21,7 +21,7 @@ from roadgpt.verdict import percent, severity
 NARROW = 384.0  # px; a chart that is meant to be narrower is not widened on any screen
 CELL, GAP, TITLE, COLUMNS = 48.0, 8.0, 14.0, 10
 POINTS = 36  # of the line of a road
-STYLES = {"INVALID": "4 2", "ERROR": "1.5 2"}
+STYLES = {"NOT TESTED": "8 2", "INVALID": "4 2", "ERROR": "1.5 2"}
 SIDE = 240.0  # px
 ACROSS = 52.0  # m that are shown
 BEHIND = 8.0  # m by which the middle of the picture lies before the failure, to show what led to it
@@ -82,7 +82,8 @@ def gallery(roads: Sequence[Thumbnail], size: float, label: str, columns: int = 
 
 def _cell(road: Thumbnail, x: float, y: float, size: float) -> str:
     top = y + TITLE
-    hue, mark = f"var(--{road.outcome.lower()})", road.outcome.lower()
+    mark = road.outcome.lower()
+    hue = f"var(--{mark.replace(' ', '-')})"
     if road.graded != road.outcome and road.share is not None:
         hue, mark = f"var(--{severity(road.share).split()[0]})", percent(road.share)
     out = [

@@ -11,7 +11,7 @@ from roadgpt.road.road import START
 from roadgpt.traffic.acting import BEHIND, STANDS, Act, Car
 from roadgpt.traffic.actor import HEADING, SIZES, SPEED, Actor, FloatArray, TestedCar, corners
 from roadgpt.traffic.places import parked_rows
-from roadgpt.traffic.traffic import Stage
+from roadgpt.traffic.traffic import NEVER, Stage
 from roadgpt.traffic.way import SPACING, Way
 
 UNCOVERED = 3.0  # s that who changes lanes has left before who stands behind it is reached
@@ -36,6 +36,8 @@ class Script:
             Actor(f"{kind} {kinds[: n + 1].count(kind)}", kind, SIZES[kind]) for n, kind in enumerate(kinds)
         ]
         self._parked = np.array([state for _, state in rows]).reshape(-1, 5)
+        self.happened: dict[str, float] = {}
+        """What of the scene has begun, in words, and at which station of its road the tested car was then."""
 
     def _placed(self, car: Car) -> list[Act]:
         """Returns the acts of everybody, as seen from the tested car."""
@@ -95,6 +97,10 @@ class Script:
         self._look(bodies)
         for act in self._acts:
             act.move(time, seen)
+        for actor, act in zip(self.actors, self._acts, strict=False):
+            self.happened |= {
+                did: car.s for n in act.shown if (did := _did(actor, act, n)) not in self.happened
+            }
         return self._states()
 
     def _look(self, bodies: FloatArray) -> None:
@@ -140,14 +146,19 @@ class Script:
         """Returns what of the scene has not begun so far, a sentence for each actor."""
         found = []
         for actor, act in zip(self.actors, self._acts, strict=False):
-            is_late = act.state() is None and not act.is_gone
-            deed = act.unseen or next(iter(act.deeds[0 if is_late else act.begun :]), None)
-            if deed is None:
+            number = next((n for n in range(len(act.deeds)) if n not in act.shown), None)
+            if number is None:
                 continue
             why = "the drive ended before"
             if act.state() is None:
-                why = "it was not on the road yet" if is_late else "it had left the road"
-            elif not deed.is_open and act.wait(deed) == math.inf:
+                why = "it had left the road" if act.is_gone else "it was not on the road yet"
+            elif not act.deeds[number].is_open and act.wait(act.deeds[number]) == math.inf:
                 why = "what it waits for did not come"
-            found.append(f"it never happened that {actor.name} {DOINGS[deed.what].said}: {why}")
+            found.append(f"{NEVER} {_did(actor, act, number)}: {why}")
         return tuple(found)
+
+
+def _did(actor: Actor, act: Act, number: int) -> str:
+    """Returns in words that somebody does one of its actions."""
+    whats = [deed.what for deed in act.deeds[: number + 1]]
+    return f"{actor.name} {DOINGS[whats[-1]].said}{' again' * (whats.count(whats[-1]) - 1)}"

@@ -1,0 +1,40 @@
+"""Rehearses a scene with the tested car as the test robot drives it: in the middle of its lane, at the speed
+of the scene, whatever is in its way. Only the others are simulated, which takes a few hundredths of a second,
+and the same seed gives the same result."""
+
+from itertools import count
+from typing import TYPE_CHECKING
+
+from roadgpt.road.road import GOAL, START
+from roadgpt.traffic.actor import STEP, Size, TestedCar
+from roadgpt.traffic.traffic import begin
+from roadgpt.traffic.way import Way
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road, World
+
+LASTS, SLOWEST = 120.0, 1.0  # s, after which a drive among others that is slower in m/s is over
+
+
+def rehearsed(road: "Road", world: "World", seed: int, size: Size, ahead: float) -> dict[str, float]:
+    """Returns what of a scene happens, in words, and the station in metres of the tested car when it begins.
+
+    Args:
+        road: the road that the tested car drives.
+        world: the World, whose scene it is.
+        seed: the seed of the drive.
+        size: the box of the tested car.
+        ahead: metres from its centre of gravity to the middle of its box."""
+    traffic, way, v = begin(road, world, seed), Way.along(road, world), world.first_speed
+    if traffic is None:
+        return {}
+    first = min(START, road.length / 2)
+    for n in count():
+        time = n * STEP
+        s = first + v * time
+        if s > road.length - GOAL or (time > LASTS and v < SLOWEST):
+            break
+        x, y, _, heading = way.pose(way.from_road(s) + ahead)
+        t = float(world.profile_of(road).middle(s))
+        traffic.advance(TestedCar(x, y, heading, v, s, t, size.length, size.width))
+    return traffic.happened

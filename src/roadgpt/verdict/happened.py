@@ -1,0 +1,95 @@
+"""Finds out why something that a scene prescribes did not happen, though the car kept its lane.
+
+A rehearsal tells whether it happens at the prescribed speed (``traffic.rehearsal``); if not, the test is
+INVALID. If so, the driver was not as fast as prescribed before. It may be slower where somebody ahead whom it
+sees calls for that: who is no more than NEAR seconds away at the prescribed speed, or is in its lane and no
+faster than the car. Then it avoided what was prescribed before that began; else that is NOT TESTED. Slower,
+or faster, is by more than SLACK for LASTS seconds. These bounds are ours.
+"""
+
+from operator import itemgetter
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.brief.visibility import weather_drawn
+from roadgpt.drive.company import heights_along, look, looks_of
+from roadgpt.drive.drive import COLUMNS
+from roadgpt.network.landscape import horizon_around
+from roadgpt.traffic.actor import SPEED, STEP, Size, X, Y
+from roadgpt.traffic.rehearsal import rehearsed
+from roadgpt.traffic.traffic import NEVER
+from roadgpt.verdict.contact import middles
+from roadgpt.verdict.measures import measure
+from roadgpt.verdict.verdict import Outcome
+
+if TYPE_CHECKING:
+    from roadgpt.drive import Drive
+    from roadgpt.road import Road, World
+
+NEAR, SLACK, LASTS = 4.0, 0.1, 1.0  # s, share of the prescribed speed, s
+AVOIDED = "avoided before it began"
+ROBOT = "robot"
+
+
+def told(road: "Road", drive: "Drive", world: "World") -> tuple[Outcome, str]:
+    """Returns the outcome of a drive in which the car kept its lane and something of the scene did not
+    happen, and why."""
+    missed = [each.removeprefix(f"{NEVER} ") for each in drive.missed]
+    box, prescribed, would = drive.car, world.first_speed, dict[str, float]()
+    if drive.driver != ROBOT:
+        size = Size(box.length, box.width, 2 * box.height)
+        would = rehearsed(road, world, drive.seed, size, box.ahead)
+    never = [each for each in missed if _did(each) not in would]
+    speed = f"{prescribed * 3.6:.0f} km/h"
+    if never:
+        also = f", nor would it with the test robot at {speed}" * (drive.driver != ROBOT)
+        return "INVALID", f"did not happen{also}: {' and '.join(never)}"
+    did, at = max(((_did(each), would[_did(each)]) for each in missed), key=itemgetter(1))
+    if wrong := _wrong_speed(road, drive, world, at):
+        return "NOT TESTED", f"{did} when a car at the prescribed {speed} has come {at:.0f} m, but {wrong}"
+    return "PASS", f"{AVOIDED}: {' and '.join(missed)}"
+
+
+def _did(missed: str) -> str:
+    return missed.rpartition(": ")[0]
+
+
+def _wrong_speed(road: "Road", drive: "Drive", world: "World", until: float) -> str:
+    """Returns in words how the car was slower than prescribed up to a station though nobody called for it, or
+    faster; empty if it was not."""
+    time = np.arange(0.0, drive.duration + 1e-6, STEP)
+    s, speed = (np.interp(time, drive["time"], drive[name]) for name in ("s", "speed"))
+    off = speed / max(world.first_speed, 1e-9) - 1.0
+    wrong = (np.abs(off) > SLACK) & (s <= until) & (world.first_speed > 0)
+    if drive.others is not None:
+        wrong &= (off > 0) | ~_is_called(road, drive, world, wrong)
+    lasts = round(LASTS / STEP)
+    since = np.flatnonzero(np.convolve(wrong, np.ones(lasts), "valid") > lasts - 0.5)
+    if not len(since):
+        return ""
+    worst = speed[wrong][np.argmax(np.abs(off[wrong]))] * 3.6
+    why = "slower, though nobody whom it saw called for that" if off[since[0]] < 0 else "faster"
+    return f"this one was {why}: {worst:.0f} km/h, from {s[since[0]]:.0f} m on"
+
+
+def _is_called(road: "Road", drive: "Drive", world: "World", where: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Returns at which of the times that are asked for somebody whom the driver sees calls for less."""
+    assert drive.others is not None
+    actors, gaps, pose = drive.others.actors, measure(road, drive, world).gap, middles(drive)
+    looks, line = looks_of(actors, weather_drawn(world.scene, drive.seed)), heights_along(road)
+    box = np.array([drive.car.length, drive.car.width, drive.car.ahead, drive.car.height])
+    far, horizon, count = NEAR * world.first_speed, horizon_around(road, world), len(actors)
+    states, order, seen = np.empty((count, 5)), np.empty(count, np.int64), np.empty((count, 7))
+    found = np.zeros(len(where), bool)
+    for n in np.flatnonzero(where):
+        step = min(int(np.searchsorted(drive["time"], n * STEP - 1e-6)), len(drive) - 1)
+        now, row = drive.others.states[n], np.array([drive[name][step] for name in COLUMNS])
+        some = order[: look(now, now, 0.0, looks, row, box, line, horizon, states, order, seen)[0]]
+        x, y, heading = pose[step]
+        ahead = (now[some, X] - x) * np.cos(heading) + (now[some, Y] - y) * np.sin(heading)
+        apart = np.hypot(now[some, X] - x, now[some, Y] - y) - (looks[some, 0] + drive.car.length) / 2
+        slower = np.isfinite(gaps[n, some]) & (now[some, SPEED] < drive["speed"][step] + 1.0)
+        found[n] = (slower | ((ahead > 0) & (apart < far))).any()
+    return found
