@@ -1,9 +1,11 @@
 """Files that may be somebody else's: whatever lies there, reading ends soon, and in a sentence."""
 
 import os
+import re
 import resource
 import time
 import zipfile
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,9 +13,11 @@ import pytest
 from click.testing import CliRunner
 
 from roadgpt import reading
+from roadgpt.campaign.traces import read_traces
 from roadgpt.cli import app
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
+from roadgpt.ground.files import attached
 
 SEGMENT = {"distance": 30, "direction": "left", "incline": 2, "turn_degrees": 40}
 
@@ -70,15 +74,42 @@ def test_json_that_would_break_the_machine_is_a_value_error(text: str) -> None:
         reading.json_of(text)
 
 
-def test_an_archive_is_measured_before_it_is_unpacked(tmp_path: Path) -> None:
-    path = tmp_path / "drive.npz"
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as file:
-        for name in ("header", "x", "y"):
-            file.writestr(f"{name}.npy", bytes(100_000_000))
+READERS = {
+    "drive.npz": (("header", "x", "y"), 200, Drive.load),
+    "ground.npz": (("heights", "cell"), 129, lambda path: attached("x.npy@0123456789ab", path.parent)),
+    "1.npz": (("header", "c01/1", "c01/1/others"), 200, lambda path: read_traces(path, "c01", 1)),
+}
+
+
+@pytest.mark.parametrize(("name", "parts", "most", "read"), [(name, *row) for name, row in READERS.items()])
+def test_an_archive_is_measured_before_it_is_unpacked(
+    name: str, parts: tuple[str, ...], most: int, read: Callable[[Path], object], tmp_path: Path
+) -> None:
+    with zipfile.ZipFile(tmp_path / name, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as file:
+        for part in parts:
+            file.writestr(f"{part}.npy", bytes(100_000_000))
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    with pytest.raises(UsageError, match="it unpacks to more than 200 MB"):
-        Drive.load(path)
+    with pytest.raises(UsageError, match=f"it unpacks to more than {most} MB"):
+        read(tmp_path / name)
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 100_000
+
+
+def test_whatever_unpacks_files_asks_the_guard() -> None:
+    """Only these modules may open what is packed; of a .npy and a .png the size is known before."""
+    unpacks = re.compile(
+        r"np\.load\(|ZipFile\((?!\w+, \"w\")|Image\.open\(|\b(gzip|bz2|lzma|tarfile|unpack_archive)\b"
+    )
+    source = Path(reading.__file__).parents[1]
+    found = {
+        path.relative_to(source).as_posix(): [each.group() for each in unpacks.finditer(text)]
+        for path in source.rglob("*.py")
+        if unpacks.search(text := path.read_text(encoding="utf-8"))
+    }
+    assert found == {
+        "roadgpt/reading.py": ["np.load("],
+        "roadgpt/ground/files.py": ["Image.open(", "np.load("],
+        "roadgpt/run/store.py": ["ZipFile("],
+    }
 
 
 @pytest.mark.timeout(60)

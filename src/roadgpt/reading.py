@@ -7,7 +7,7 @@ import json
 import os
 import stat
 import zipfile
-from collections.abc import Hashable, Iterable
+from collections.abc import Collection, Hashable, Iterable
 from errno import EISDIR
 from functools import cache
 from hashlib import file_digest, sha256
@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar, cast
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
     from pydantic import BaseModel
 
 T = TypeVar("T")
@@ -125,6 +126,19 @@ def json_of(text: str) -> Any:
         return json.loads(text, parse_int=_integer)
     except RecursionError:
         raise ValueError("it is nested too deeply") from None
+
+
+def arrays_in(
+    path: Path, what: str, unpacked: int, names: Collection[str] = (), most: int = LARGEST
+) -> "dict[str, NDArray[Any]]":
+    """Returns the arrays in a .npz file by name, all or those of ``names`` that it has; never pickled ones.
+    Raises ValueError if they have more than ``unpacked`` bytes, and other errors if the file is broken."""
+    import numpy as np
+
+    with opened(path, most, what) as file, np.load(file, allow_pickle=False) as archive:
+        found = [name for name in archive.files if not names or name in names]
+        check_unpacked([archive.zip.getinfo(f"{name}.npy") for name in found], unpacked)
+        return {name: archive[name] for name in found}
 
 
 def check_unpacked(entries: Iterable[zipfile.ZipInfo], most: int) -> None:

@@ -2,12 +2,19 @@
 
 import json
 import os
+import re
 import shlex
 import subprocess
 import sys
+import unicodedata
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from command_line import roadgpt
+from roadgpt.cli.streams import shown as as_printed
 
 ROADGPT = [sys.executable, "-c", "from roadgpt.cli import main; main()"]
 RUN = [*ROADGPT, "run", "turn x3 | up", "--reader", "plan", "--no-plot", "--no-drive"]
@@ -130,3 +137,64 @@ def test_a_pipe_that_has_not_all_letters_gets_escapes() -> None:
     assert b"\\u4f60" in said
     (folder,) = Path("roadgpt-runs").iterdir()
     assert b"\xe4\xbd\xa0" in said_in("utf-8", "show", str(folder))
+
+
+EVIL = "\x1b]0;title\x07\x1b[2J\x1b[8m\x1b[30m\x9b31m\x7f\u202e\u2066\r"
+SEVERAL = """
+import json, sys
+from roadgpt.cli import app
+from roadgpt.cli.streams import make_ready
+make_ready()
+for words in json.loads(sys.argv[1]):
+    try:
+        app(words, prog_name="roadgpt")
+    except SystemExit:
+        pass
+"""
+
+
+def commands(char: str) -> bool:
+    """Whether a character commands a terminal, or the direction of the text, by its classes in Unicode."""
+    turns = ("LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI")
+    kind, way = unicodedata.category(char), unicodedata.bidirectional(char)
+    return (kind in ("Cc", "Zl", "Zp") and char not in "\n\t") or way in turns or char in "\u200e\u200f"
+
+
+def poisoned(data: object) -> object:
+    """The same data with commands for terminals in each sentence."""
+    if isinstance(data, dict):
+        return {name: poisoned(value) for name, value in data.items()}
+    if isinstance(data, list):
+        return [poisoned(value) for value in data]
+    return f"{data}{EVIL}" if isinstance(data, str) and " " in data else data
+
+
+def test_what_others_wrote_commands_no_terminal() -> None:
+    """A folder whose sentences hold commands is shown, compared and exported, and names of files are said."""
+    roadgpt("run", "straight 100", *RUN[5:], "--out", "r")
+    for file in Path("r").rglob("*.json"):
+        file.write_text(json.dumps(poisoned(json.loads(file.read_text()))))
+    Path("own.json").write_text(json.dumps({"format": EVIL}))
+    run = "r/runs/0001"
+    words = [
+        ["show", "r"], ["show", run], ["show", run, "--json"], ["export", run, "--to", "csv", "--out", "e"],
+        ["compare", run, run], ["drive", f"none{EVIL}.json"], ["drive", "own.json"], ["run", "--plan", EVIL],
+        ["check", run], ["edit", run, "--plan", f"turn 1: {EVIL}"],
+    ]  # fmt: skip
+    said, _ = on_a_terminal(sys.executable, "-c", SEVERAL, json.dumps(words))
+    bar = r"\x1b\[(?:[0-9;]*m|2K|1A|\?25[lh])|\r\n?"
+    hidden = re.findall(r"\x1b\[(?:8|30)m", said)
+    assert hidden == [char for char in re.sub(bar, "", said) if commands(char)] == []
+    assert said.count("\\u001b]0;title\\u0007\\u001b[2J") >= 4
+    assert "\\u009b31m\\u007f\\u202e\\u2066\\u000d" in said
+
+
+@given(
+    st.text(st.characters(categories=["Cc", "Cf", "Zl", "Zp", "Lu", "Nd"]) | st.sampled_from("\x1b[0;8m\n\t"))
+)
+def test_only_what_commands_is_shown_otherwise(text: str) -> None:
+    """Unicode's classes are the second opinion: controls, separators of lines, and overrides of direction."""
+    told = as_printed(text)
+    assert not any(map(commands, re.sub(r"\x1b\[(?:[01]|3[1-6]|91)m", "", told)))
+    back = re.sub(r"\\u([0-9a-f]{4})", lambda found: chr(int(found[1], 16)), told)
+    assert back == text

@@ -225,6 +225,21 @@ def test_a_geotiff_without_an_area_is_refused(tmp_path: Path) -> None:
     refused(tiff(tmp_path / "land.tif", np.zeros((4, 5), np.float32), Affine(10, 0, 0, 0, 0, 10)))
 
 
+def test_a_geotiff_of_one_giant_tile_and_other_formats_under_its_name_are_refused(tmp_path: Path) -> None:
+    path, tile = tmp_path / "land.tif", {"tiled": True, "blockxsize": 8192, "blockysize": 8192}
+    with rasterio.open(
+        path, "w", "GTiff", 64, 64, 1, dtype="uint8", transform=north_up(0, 0, 5), sparse_ok=True, **tile
+    ):
+        pass
+    assert path.stat().st_size < 10_000
+    assert "2 x 2 to 16,000,000" in refused(path)
+    tiff(tmp_path / "real.tif", hills(30, 30), north_up(0, 0, 5))
+    names = '<SourceFilename relativeToVRT="1">real.tif</SourceFilename><SourceBand>1</SourceBand>'
+    band = f'<VRTRasterBand dataType="Float32" band="1"><SimpleSource>{names}</SimpleSource></VRTRasterBand>'
+    path.write_text(f'<VRTDataset rasterXSize="30" rasterYSize="30">{band}</VRTDataset>')
+    assert "cannot be read" in refused(path)
+
+
 def test_a_grid_whose_projection_is_in_degrees_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "land.asc"
     path.write_text(ASC + "1 2 3\n4 5 6\n")

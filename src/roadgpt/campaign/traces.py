@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from roadgpt.drive import COLUMNS, Box, Columns, Drive, Handover
 from roadgpt.drive.drive import OTHERS, packed, unpacked
 from roadgpt.errors import UsageError
-from roadgpt.reading import check_unpacked, json_of, opened, strictly
+from roadgpt.reading import arrays_in, json_of, strictly
 from roadgpt.run.atomic import write_whole
 
 TRACES, SUFFIX = "traces", ".npz"
@@ -130,14 +130,9 @@ def read_traces(path: Path, cell: str, number: int) -> Drive:
     """Reads one drive out of a file of traces."""
     which = {"cell": cell, "number": number}
     try:
-        with opened(path, LARGEST, "drives of a campaign") as file:
-            archive = np.load(file, allow_pickle=False)
-            names = ["header", f"{cell}/{number}", f"{cell}/{number}/{OTHERS}"]
-            names = [name for name in names if name in archive.files]
-            check_unpacked([archive.zip.getinfo(f"{name}.npy") for name in names], UNPACKED)
-            contents = json_of(str(archive["header"]))
-            rows = archive[f"{cell}/{number}"]
-            others = archive[names[2]] if len(names) > 2 else None
+        names = "header", f"{cell}/{number}", f"{cell}/{number}/{OTHERS}"
+        found = arrays_in(path, "drives of a campaign", UNPACKED, names, LARGEST)
+        contents, rows, others = json_of(str(found["header"])), found[names[1]], found.get(names[2])
         if contents["format"] != FORMAT or contents["columns"] != [*COLUMNS]:
             raise ValueError("another version of roadgpt wrote it")
         if rows.dtype != np.int32 or rows.ndim != 2 or len(rows) != len(COLUMNS) or not rows.size:

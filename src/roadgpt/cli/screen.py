@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Self
 import click
 
 from roadgpt import stopping
-from roadgpt.cli.streams import apart, is_coloured, progress
+from roadgpt.cli.streams import apart, is_coloured, progress, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -356,4 +356,5 @@ class Screen:
 def _show(line: str, on_stderr: bool = False) -> None:
     """Prints a line, in colour only on a terminal; click.echo would write into the progress bar."""
     stream = sys.stderr if on_stderr else sys.stdout
+    line = shown(line)
     print(line if stream.isatty() and is_coloured() else click.unstyle(line), file=stream, flush=True)

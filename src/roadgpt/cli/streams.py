@@ -5,6 +5,7 @@ import io
 import logging
 import os
 import platform
+import re
 import sys
 import tempfile
 import time
@@ -21,6 +22,10 @@ from roadgpt.errors import GivenUpError
 
 T = TypeVar("T")
 LETTERS = "backslashreplace"  # characters that the stream's encoding lacks are written as escapes
+OWN = re.compile(r"(\x1b\[(?:[01]|3[1-6]|91)m)")  # what sets our colours; no text can hide itself by them
+_TURNING = (*range(0x200E, 0x2010), *range(0x2028, 0x202F), *range(0x2066, 0x206A))
+COMMANDS = {code: f"\\u{code:04x}" for code in (*range(9), *range(11, 32), *range(0x7F, 0xA0), *_TURNING)}
+"""Characters that command a terminal, or turn text around, and how they are shown; as in JSON."""
 
 
 class OutputError(Exception):
@@ -34,7 +39,20 @@ class OutputError(Exception):
         )
 
 
-class _Output(io.TextIOWrapper):
+def shown(text: str) -> str:
+    """Returns text, as it may stand in anybody's file, as it is printed: characters that command a terminal
+    stand as escapes, apart from our own colours."""
+    parts = OWN.split(text)
+    parts[::2] = (part.translate(COMMANDS) for part in parts[::2])
+    return "".join(parts)
+
+
+class _Shown(io.TextIOWrapper):
+    def write(self, text: str) -> int:
+        return super().write(shown(text))
+
+
+class _Output(_Shown):
     def write(self, text: str) -> int:
         try:
             return super().write(text)
@@ -49,8 +67,8 @@ class _Output(io.TextIOWrapper):
 
 
 def make_ready() -> None:
-    """Makes both output streams accept every character; failed writes to standard output raise OutputError. A
-    stream that was closed before the program began is replaced by the null device."""
+    """Makes both output streams accept every character, and show those that command a terminal; failed writes
+    to standard output raise OutputError. A stream that was closed before is replaced by the null device."""
     logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it warns if it cannot keep its list of fonts
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         if getattr(sys, name) is None:  # writing to standard output then fails, as to one that is closed
@@ -60,7 +78,7 @@ def make_ready() -> None:
                 os.close(opened)
             setattr(sys, name, os.fdopen(number, "r" if name == "stdin" else "w"))
     if isinstance(sys.stderr, io.TextIOWrapper):
-        sys.stderr.reconfigure(errors=LETTERS)
+        sys.stderr = _Shown(sys.stderr.detach(), sys.stderr.encoding, LETTERS, line_buffering=True)
     if isinstance(sys.stdout, io.TextIOWrapper):
         encoding, is_terminal = sys.stdout.encoding, sys.stdout.line_buffering
         sys.stdout = _Output(sys.stdout.detach(), encoding, LETTERS, line_buffering=is_terminal)
@@ -75,7 +93,7 @@ def drop_output() -> None:
 
 def warn(sentence: object) -> None:
     """Prints a sentence on standard error, preceded by the name of the program."""
-    click.echo(f"roadgpt: {sentence}", err=True)
+    click.echo(f"roadgpt: {shown(str(sentence))}", err=True)
 
 
 @contextmanager
@@ -128,7 +146,7 @@ def progress(
         texts = TextColumn("{task.description}"), TextColumn("{task.fields[rate]}"), TextColumn("ETA")
         bar = Progress(
             *(texts[0], BarColumn(), MofNCompleteColumn(), *texts[1:], TimeRemainingColumn()),
-            console=Console(stderr=True),
+            console=Console(file=os.fdopen(os.dup(sys.stderr.fileno()), "w", errors=LETTERS)),
             # lines on standard output pass above the bar only if both are the terminal; a file must get them
             redirect_stdout=sys.stdout.isatty(),
             transient=True,

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.errors import SimulationError, UsageError
-from roadgpt.reading import check_unpacked, opened, strictly
+from roadgpt.reading import arrays_in, json_of, strictly
 
 if TYPE_CHECKING:
     from roadgpt.traffic import Tracks
@@ -233,11 +233,8 @@ class Drive:
         Raises:
             UsageError: there is no such file, or it does not hold a Drive."""
         try:
-            with opened(Path(path), LARGEST, "a drive") as file, np.load(file, allow_pickle=False) as archive:
-                check_unpacked(archive.zip.infolist(), UNPACKED)
-                header = json.loads(str(archive["header"]))
-                arrays = {name: archive[name] for name in archive.files if name != "header"}
-            return _checked(header, arrays)
+            arrays = arrays_in(Path(path), "a drive", UNPACKED, most=LARGEST)
+            return _checked(json_of(str(arrays.pop("header"))), arrays)
         except UsageError:
             raise
         except FileNotFoundError as error:

@@ -22,8 +22,10 @@ from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
 from roadgpt.ground.given import BESIDE, GivenGround
 from roadgpt.ground.relief import Relief
+from roadgpt.reading import arrays_in, opened, read_json, read_text
 
 MOST = 16_000_000  # heights in a file
+UNPACKED = 8 * MOST + 1_000_000  # bytes
 LEAST_CELL, LARGEST_CELL, HIGHEST = 0.05, 1000.0, 20_000.0  # m; 0.05 degrees are 5.6 km
 UNREADABLE = (  # what the libraries raise that read files, if those are broken
     OSError, EOFError, ValueError, LookupError, TypeError, ArithmeticError, MemoryError, RecursionError,
@@ -52,10 +54,10 @@ def attached(name: str, folder: Path) -> GivenGround:
     not there, or not those."""
     path = folder / BESIDE
     try:
-        with np.load(path, allow_pickle=False) as data:
-            made = named(name.rpartition("@")[0], _relief(data["heights"], float(data["cell"]), path))
+        data = arrays_in(path, "land", UNPACKED, ("heights", "cell"), UNPACKED)
+        made = named(name.rpartition("@")[0], _relief(data["heights"], float(data["cell"]), path))
     except UNREADABLE as error:
-        raise UsageError(f"the land '{name}' is missing: {path} cannot be read; copy it there") from error
+        raise UsageError(f"the land '{name}' is missing: {path}: {_why(error)}; copy it there") from error
     if made != name:
         raise UsageError(f"{path} holds other land than '{name}'; copy the right one there")
     return made
@@ -66,10 +68,14 @@ def read_ground(path: Path) -> GivenGround:
     if (reader := READERS.get(path.suffix.lower())) is None:
         raise UsageError(f"{path} is no land that can be read; give one of {', '.join(READERS)}")
     try:
+        opened(path, 2 * UNPACKED, "land").close()
         return named(str(path), reader(path))
     except UNREADABLE as error:
-        why = getattr(error, "strerror", None) or (str(error) or type(error).__name__).splitlines()[0][:160]
-        raise UsageError(f"the land in {path} cannot be read: {why}") from error
+        raise UsageError(f"the land in {path} cannot be read: {_why(error)}") from error
+
+
+def _why(error: BaseException) -> str:
+    return getattr(error, "strerror", None) or (str(error) or type(error).__name__).splitlines()[0][:160]
 
 
 def _relief(heights: NDArray[Any], cell: float, path: Path) -> Relief:
@@ -96,12 +102,12 @@ def _said_beside(path: Path, *names: str) -> list[float]:
     if not beside.is_file():
         example = json.dumps({**dict.fromkeys(names, 0.01), "cell": 1.0})
         raise UsageError(f"{path} does not say its metres; write into {beside.name} beside it: {example}")
-    said = json.loads(beside.read_text(encoding="utf-8"))
+    said = read_json(beside)
     return [float(said[name]) for name in names]
 
 
 def _png(path: Path) -> Relief:
-    with Image.open(path) as image:
+    with Image.open(path, formats=("PNG",)) as image:
         if image.mode not in ("I;16", "I;16B", "I", "L"):
             raise UsageError(f"{path} is a picture in colours; give a grey one with 16 bits")
         if image.width * image.height > MOST:
@@ -132,7 +138,7 @@ def _asc(path: Path) -> Relief:
             raise UsageError(f"{path} has no table of 2 x 2 to {MOST:,} heights")
         table = np.array(lines.read().split(), np.float64).reshape(rows, columns)[::-1]
     plan = path.with_suffix(".prj")
-    if plan.is_file() and plan.read_text(errors="replace").lstrip().upper().startswith(("GEOGC", "GEODC")):
+    if plan.is_file() and read_text(plan, encoding="latin-1").lstrip().upper().startswith(("GEOGC", "GEODC")):
         raise UsageError(f"{path} is in degrees, as {plan.name} says; convert it to metres first")
     table = np.where(table == header.get("nodata_value", math.nan), math.nan, table)
     return _relief(table, header["cellsize"], path)
@@ -144,8 +150,8 @@ def _tiff(path: Path) -> Relief:
     except ImportError as error:
         raise UsageError('GeoTIFF needs rasterio: pip install "roadgpt[ground]"') from error
     try:
-        with rasterio.open(path) as data:
-            if data.width * data.height > MOST:
+        with rasterio.open(path, driver="GTiff") as data:  # others may name further files
+            if max(data.width * data.height, *map(math.prod, data.block_shapes)) > MOST:
                 raise UsageError(f"{path} has no table of 2 x 2 to {MOST:,} heights")
             if data.transform.b or data.transform.d:
                 raise UsageError(f"{path} is turned against the map; give land whose rows lie west to east")
