@@ -200,3 +200,31 @@ class TestRefusals:
         (first, way, after) = self.route.legs
         for legs in ([first, way], [way, after], [way]):
             assert self.refused(*legs) == "a route begins and ends on a road outside junctions"
+
+
+@pytest.mark.parametrize("left_hand", [False, True])
+def test_a_route_begins_and_ends_also_on_the_ring_of_a_roundabout(left_hand: bool) -> None:
+    """Each way inside passes one arm: on the ring it leaves at the first of them, from an arm at the next."""
+    whole = built(design(60.0, BACK) | {"left_hand": left_hand})
+    network, legs = whole.network, whole.legs
+    own = [leg.road in network.roundabouts[0].ring for leg in legs]
+    places = [n for n, is_on_ring in enumerate(own) if is_on_ring]
+    assert len(places) == 4
+    for first in (0, *places):
+        for last in (*places, len(legs) - 1):
+            if last < first:
+                continue
+            route = Route.along(network, legs[first : last + 1]).on_ground()
+            assert route.length == pytest.approx(whole.starts[last + 1] - whole.starts[first])
+            ways = [n for n in range(first, last + 1) if network.road(legs[n].road).junction is not None]
+            if not ways:
+                assert (first, route.passages) == (last, ())
+                continue
+            (passage,) = route.passages
+            assert passage.start == pytest.approx(whole.starts[ways[0]] - whole.starts[first])
+            assert passage.end == pytest.approx(whole.starts[ways[-1] + 1] - whole.starts[first])
+            assert passage.arrival.road == legs[ways[0] - 1].road
+            assert passage.departure.road == legs[ways[-1] + 1].road
+            assert passage.control == ("none" if own[first] else "yield")
+            if last == len(legs) - 1:
+                assert passage.exit == len(ways) - (not own[first])

@@ -182,7 +182,7 @@ def line_to_stop_at(network: Network, junction: Junction, arm: Arm) -> Array | N
 def gives_way_to_ring(network: Network, junction: Junction, arm: Arm) -> bool:
     """Returns whether traffic from an arm gives way at the outer edge of a roundabout's ring. The line then
     lies on the road that leads into the ring, and not on that of the arm."""
-    return arm.control == "yield" and junction.id in network.roundabout_of
+    return arm.control == "yield" and arm.line is None and junction.id in network.roundabout_of
 
 
 def road_of_line(network: Network, junction: Junction, arm: Arm) -> int:
@@ -193,7 +193,10 @@ def road_of_line(network: Network, junction: Junction, arm: Arm) -> int:
 
 
 def line_before(arm: Arm) -> float:
-    """Returns the distance in metres from a junction to the stop line of an arm: 0 without a crosswalk."""
+    """Returns the distance in metres from a junction to the stop line of an arm: as a map says, else 0
+    without a crosswalk."""
+    if arm.line is not None:
+        return arm.line
     return CROSSED if arm.crosswalk else 0.0
 
 

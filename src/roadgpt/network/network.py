@@ -149,6 +149,7 @@ class Arm:
     direction: float  # the heading in radians out of the junction
     control: Control = "none"  # the sign or the light that traffic into the junction meets
     crosswalk: bool = False  # whether pedestrians cross the road there
+    line: float | None = None  # m from the end of the road to its stop line, where a map says so
 
 
 @dataclass(frozen=True)
@@ -396,7 +397,7 @@ def network_to_json(network: Network) -> dict[str, Any]:
     """Returns a network as JSON data for ``network_from_json``."""
     roads = [{"id": each.id, "junction": each.junction, **each.road.to_json()} for each in network.roads]
     parts = (network.junctions, network.roundabouts, network.continuations)
-    plain = TypeAdapter(_Parts).dump_python(parts, mode="json")
+    plain = TypeAdapter(_Parts).dump_python(parts, mode="json", exclude_none=True)
     return {"roads": roads, **dict(zip(_NAMES, plain, strict=True))}
 
 

@@ -93,8 +93,18 @@ def _passage(network: Network, one: Leg, other: Leg, start: float, end: float) -
     if ring is None and network.left_hand:
         arms = arms[::-1]
     ends = [arm.end for arm in arms]
-    at = ends.index(first.incoming)
-    return Passage(start, end, entered, first.incoming, last.outgoing, (*ends[at:], *ends[:at]))
+    if ring is None:
+        at = ends.index(first.incoming)
+        around = [*ends[at:], *ends[:at]]
+    else:
+        at = ring.junctions.index(entered.id)
+        left = network.connection_of[other.road][0].arms[0].end
+        around = [*ends[at:], *ends[:at]]
+        if last.outgoing.road in ring.ring:  # the route ends on the ring
+            around.insert(around.index(left) + 1, last.outgoing)
+        if first.incoming.road in ring.ring:
+            around.insert(0, first.incoming)
+    return Passage(start, end, entered, first.incoming, last.outgoing, tuple(around))
 
 
 def area_with_verges(network: Network) -> Area:
@@ -203,9 +213,10 @@ class Route(Road):
             _check_joint(network, one, two)
         if network.left_hand:
             return cls.along(network.mirrored, _mirrored_legs(legs)).mirrored
-        if not legs and not network.roads_outside:
+        if not legs and not network.plain_roads:
             raise UsageError("the network has no road outside junctions; make the road again")
-        first = network.roads_outside[0] if not legs else network.road(legs[0].road)
+        outside = network.roads_outside or network.plain_roads
+        first = outside[0] if not legs else network.road(legs[0].road)
         followed = legs or (Leg(first.id, (*first.profile.along_ids, *first.profile.against_ids)[0]),)
         if any(network.road(followed[n].road).junction is not None for n in (0, -1)):
             raise UsageError("a route begins and ends on a road outside junctions")
@@ -251,12 +262,16 @@ class Route(Road):
     @cached_property
     def passages(self) -> tuple[Passage, ...]:
         """The passages through junctions in driving order. A way through a roundabout is one passage, though
-        a roundabout has several junctions."""
+        a roundabout has several junctions. If the route begins or ends on its ring, the passage begins behind
+        or ends before this piece of the ring."""
         network, legs, starts = self.network, self.legs, self.starts
         groups = groupby(range(len(legs)), key=lambda n: _place(network, legs[n]))
+        through = [[*group] for place, group in groups if place is not None]
+        ways = [[n for n in own if network.road(legs[n].road).junction is not None] for own in through]
         return tuple(
             _passage(network, legs[own[0]], legs[own[-1]], starts[own[0]], starts[own[-1] + 1])
-            for own in (list(group) for place, group in groups if place is not None)
+            for own in ways
+            if own
         )
 
     @property

@@ -17,7 +17,8 @@ from roadgpt.network.network import Leg
 CHANGE = 30.0  # m of road for each change of lanes
 LEAST = 2.0  # m; where a lane is narrower, no route leads along it
 NEAR = 10.0  # m; a point farther away from all lanes is on no road
-SHORTEST, LONGEST = 150.0, 2_000.0  # m, of a route that is drawn at random
+LENGTHS = (150.0, 100.0)  # m; a route that is drawn at random has at least the first, else the second
+LONGEST = 2_000.0  # m, of such a route
 PLACES = 9  # at which the width of half a lane is looked at
 TRIES = 40  # drawn starts for each route that is wanted
 State = tuple[Leg, int]
@@ -26,7 +27,8 @@ State = tuple[Leg, int]
 
 def over_roads(lanes: Lanes, roads: Sequence[Sequence[int]]) -> tuple[Leg, ...]:
     """Returns the route over roads in this order, each given by the ids of its parts; the roads inside
-    junctions are found. Raises UsageError if no way leads from one road to the next."""
+    junctions and on rings of roundabouts are found. Raises UsageError if no way leads from one road to the
+    next."""
     named = [set(each) for each in roads]
     for number, own in enumerate(named):
         if any(lanes.network.road(each).junction is not None for each in own):
@@ -41,7 +43,7 @@ def over_roads(lanes: Lanes, roads: Sequence[Sequence[int]]) -> tuple[Leg, ...]:
         if place + 1 < len(named) and lane.road in named[place + 1]:
             reached = max(reached, place + 1)
             return lane, place + 1
-        return None
+        return (lane, place) if lane.road in lanes.network.roundabout_of else None
 
     starts = [(lane.id, 0) for lane in _driving(lanes) if lane.id.road in named[0]]
     goals = {(lane.id, len(named) - 1) for lane in lanes if lane.id.road in named[-1]}
@@ -61,22 +63,28 @@ def between(lanes: Lanes, start: tuple[float, float], goal: tuple[float, float])
 
 
 def random_routes(lanes: Lanes, count: int, seed: int) -> list[tuple[Leg, ...]]:
-    """Returns up to ``count`` different routes of 150 to 2,000 m, or as long as possible if the network has
-    no longer ones; the same seed gives the same routes."""
+    """Returns up to ``count`` different routes of 150 to 2,000 m through a junction, or of 100 m at least; if
+    none leads through a junction, without one; and if the network has none of 100 m, as long as possible. The
+    same seed gives the same routes."""
     rng = np.random.default_rng(seed)
-    outside = [lane for lane in _driving(lanes) if lane.member.junction is None]
+    plain = [lane for lane in _driving(lanes) if lane.member.junction is None]
+    outside = [lane for lane in plain if lane.id.road not in lanes.network.roundabout_of] or plain
+    goals = {lane.id for lane in outside}
     found = dict[tuple[int, ...], tuple[Leg, ...]]()
-    for least in (SHORTEST, 0.0):
-        for _ in range(TRIES * count if outside else 0):
-            if len(found) == count:
-                break
-            start = outside[int(rng.integers(len(outside)))].id
-            ends = [state for state in _reached(lanes, start, LONGEST) if state[1] >= least]
-            if ends:
-                goal = ends[int(rng.integers(len(ends)))][0]
-                way = _shortest(lanes, [(start, 0)], {(goal, 0)})
-                if way is not None and _length(lanes, way) <= LONGEST:
-                    found.setdefault(tuple(dict.fromkeys(leg.road for leg in way)), way)
+    for through, lengths in ((True, LENGTHS), (False, LENGTHS), (False, (0.0,))):
+        for least in lengths if not found else ():
+            for _ in range(TRIES * count if outside else 0):
+                if len(found) == count:
+                    break
+                start = outside[int(rng.integers(len(outside)))].id
+                reached = [each for each in _reached(lanes, start, LONGEST) if each[0] in goals]
+                most = max((metres for _, metres, _ in reached), default=0.0)
+                ends = [each for each in reached if each[1] >= (least or most) and each[2] >= through]
+                if ends:
+                    goal = ends[int(rng.integers(len(ends)))][0]
+                    way = _shortest(lanes, [(start, 0)], {(goal, 0)})
+                    if way is not None and _length(lanes, way) <= LONGEST:
+                        found.setdefault(tuple(dict.fromkeys(leg.road for leg in way)), way)
     return list(found.values())
 
 
@@ -136,16 +144,16 @@ def _shortest(
     return None if way is None else tuple(lane for lane, _ in way)
 
 
-def _reached(lanes: Lanes, start: Leg, most: float) -> list[tuple[Leg, float]]:
-    """Returns the lanes outside junctions that are reached from a lane without changes of lane, with the
-    metres to their ends, up to ``most``."""
-    found, waiting = dict[Leg, float](), [(lanes.by_id[start].length, start)]
+def _reached(lanes: Lanes, start: Leg, most: float) -> list[tuple[Leg, float, bool]]:
+    """Returns the lanes that are reached from a lane without changes of lane, with the metres to their ends,
+    up to ``most``, and whether the way leads through a junction."""
+    found, waiting = dict[Leg, tuple[float, bool]](), [(lanes.by_id[start].length, start, False)]
     while waiting:
-        metres, lane = heappop(waiting)
+        metres, lane, through = heappop(waiting)
         if lane in found or metres > most:
             continue
-        found[lane] = metres
+        found[lane] = metres, through or lanes.by_id[lane].member.junction is not None
         for each, changes, _ in _steps(lanes, lane):
             if not changes:
-                heappush(waiting, (metres + lanes.by_id[each].length, each))
-    return [(lane, metres) for lane, metres in found.items() if lanes.by_id[lane].member.junction is None]
+                heappush(waiting, (metres + lanes.by_id[each].length, each, found[lane][1]))
+    return [(lane, *said) for lane, said in found.items()]

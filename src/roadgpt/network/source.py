@@ -67,17 +67,11 @@ def read_sources(path: str | Path, wanted: str | None = None) -> list[RoadSource
     are not valid are returned as errors. Raises UsageError if the file cannot be read or has no such road."""
     path = Path(path, "road.json") if Path(path).is_dir() else Path(path)
     ending, card, world = path.suffix.lower(), path.with_name("run.json"), {}
+    text = ""
     try:
         text = "<" if ending == OPENDRIVE else read_text(path, LARGEST, "a road file")
         if text.lstrip()[:1] == "<":
-            if wanted is None and (found_map := map_in(path)) is not None:
-                values, told = found_map.world_values()
-                whole = Route.along(found_map.network, ())
-                return [RoadSource(whole, (*found_map.remarks, *told), values, path.stem)]
-            from roadgpt.network.opendrive import read_opendrive
-
-            road = read_opendrive(path, wanted)
-            return [RoadSource(road.road, road.remarks, road.world_values, road.id, road.name)]
+            return [_of_opendrive(path, wanted)]
         if ending == LINES:
             text = "[" + ",\n".join(line for line in text.splitlines() if line.strip()) + "]"
         data = text if ending in SUFFIXES else json_of(text)
@@ -88,6 +82,8 @@ def read_sources(path: str | Path, wanted: str | None = None) -> list[RoadSource
     except OSError as error:
         raise UsageError(f"cannot read {path}: {error.strerror}; give the path of a road file") from error
     except (ValueError, LookupError, TypeError) as error:
+        if text.lstrip()[:1] == "<":  # a fault of the reader
+            raise
         raise UsageError(f"{path} is not valid JSON ({error}); give {SHAPES}") from error
     tests = [(_name(data) or path.stem, data)]
     if isinstance(data, list) and any(map(_is_test, data)):
@@ -96,6 +92,17 @@ def read_sources(path: str | Path, wanted: str | None = None) -> list[RoadSource
     if not found:
         raise UsageError(f"{path}: there is no road {wanted} in it")
     return found
+
+
+def _of_opendrive(path: Path, wanted: str | None) -> RoadSource:
+    if wanted is None and (found_map := map_in(path)) is not None:
+        values, told = found_map.world_values()
+        whole = Route.along(found_map.network, ())
+        return RoadSource(whole, (*found_map.remarks, *told), values, path.stem)
+    from roadgpt.network.opendrive import read_opendrive
+
+    road = read_opendrive(path, wanted)
+    return RoadSource(road.road, road.remarks, road.world_values, road.id, road.name)
 
 
 def map_in(path: Path) -> "ImportedMap | None":

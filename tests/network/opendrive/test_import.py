@@ -15,6 +15,7 @@ from roadgpt.export import save
 from roadgpt.export.exporters.opendrive import document
 from roadgpt.geometry import GradeProfile
 from roadgpt.network import ImportedRoad, read_opendrive, read_source
+from roadgpt.network.opendrive import read_map
 from roadgpt.road import Road, World, build
 from strategies import designs
 from tables import rows
@@ -187,17 +188,69 @@ def test_what_a_road_cannot_show_is_told_by_name_and_number(tmp_path: Path) -> N
         '<lane id="-3" type="sidewalk"><width sOffset="0" a="2"/></lane>'
         '<lane id="-4" type="sidewalk"><width sOffset="0" a="2"/></lane>'
     )
-    path = file(tmp_path, rest=rest, right=wide, road='rule="LHT" junction="7"')
+    path = file(tmp_path, rest=rest, right=wide, road='junction="7"')
     header = "<geoReference><![CDATA[+proj=utm]]></geoReference><offset x='1' y='2'/>"
     path.write_text(path.read_text().replace('revMinor="4"/>', f'revMinor="4">{header}</header>'))
     assert read_opendrive(path).remarks == (
-        "it is made for left-hand traffic, and is driven on the right here",
-        "the car keeps to lane 2 from the centre line, the rightmost that is 2 m wide everywhere",
+        "the car keeps to lane 2 from the centre line, the outermost that is 2 m wide everywhere",
         "left out: objects without a type",
         "left out: signs without a type",
         "left out: 1 <height>, 1 <shape>, 1 railway, 1 surface, 1 tunnel, <geoReference> of the map, "
         "<offset> of the map, junction 7",
     )
+
+
+@pytest.mark.parametrize("right", [RIGHT, ""], ids=["two lanes", "left lane only"])
+def test_a_single_road_with_traffic_on_the_left_is_driven_on_the_left(tmp_path: Path, right: str) -> None:
+    """The car keeps to the lane on the left of the line, along the line."""
+    bent = LINE.replace("<line/>", '<arc curvature="0.02"/>')
+    found = read_opendrive(file(tmp_path, bent, road='rule="LHT"', right=right)).road
+    there = read_opendrive(file(tmp_path, bent)).road
+    assert found.profile is not None
+    s = np.linspace(0, 40, 30)
+    assert found.at(s, found.profile.middle(s)) == pytest.approx(there.at(s, 1.5), abs=1e-9)
+
+
+def test_our_own_road_with_traffic_on_the_left_comes_back(tmp_path: Path) -> None:
+    left = read_opendrive(file(tmp_path, road='rule="LHT"')).road
+    *_, path = save(left, tmp_path / "one", ["opendrive"], WORLD)
+    *_, again = save(read_opendrive(path).road, tmp_path / "two", ["opendrive"], WORLD)
+    assert again.read_bytes() == path.read_bytes()
+    assert 'rule="LHT"' in path.read_text()
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.1"])
+def test_a_later_major_version_is_refused_by_its_number(tmp_path: Path, version: str) -> None:
+    path = file(tmp_path)
+    major, minor = version.split(".")
+    newer = f'revMajor="{major}" revMinor="{minor}"'
+    path.write_text(path.read_text().replace('revMajor="1" revMinor="4"', newer))
+    for reader in (read_opendrive, read_map):
+        with pytest.raises(UsageError, match=f"it is OpenDRIVE {version}; only 1.1 to 1.9 are read"):
+            reader(path)
+
+
+def test_the_permanent_layer_of_a_road_is_read_and_the_temporary_one_is_named(tmp_path: Path) -> None:
+    """ASAM OpenDRIVE 1.9, 11.2: each road has one permanent layer, and at most one temporary one over it."""
+    there = read_opendrive(file(tmp_path, right=RIGHT))
+    path = file(tmp_path, right=RIGHT)
+    layer = LANES.format(right=RIGHT.replace('a="3"', 'a="2.6"'), offset="")
+    text = path.read_text().replace("<lanes>", '<lanes layer="permanent">')
+    for both in (
+        text.replace("</lanes>", "</lanes>" + layer.replace("<lanes>", '<lanes layer="temporary">')),
+        text.replace(
+            '<lanes layer="p', layer.replace("<lanes>", '<lanes layer="temporary">') + '<lanes layer="p'
+        ),
+    ):
+        path.write_text(both)
+        found = read_opendrive(path)
+        assert found.lane_width == there.lane_width
+        assert found.remarks == (*there.remarks, "left out: 1 temporary <lanes>")
+
+
+def test_lanes_for_both_directions_are_named(tmp_path: Path) -> None:
+    found = read_opendrive(file(tmp_path, right=RIGHT.replace("driving", "bidirectional")))
+    assert any("lanes for both directions are driven in one only here" in each for each in found.remarks)
 
 
 SECTIONS = """<OpenDRIVE><road id="1" length="90"><planView>

@@ -1,6 +1,7 @@
 """Maps written by hand, with what tools write and RoadGPT does not: where everything is, by arithmetic."""
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,7 @@ from shapely import GeometryCollection, LineString, MultiPolygon, box, points
 
 from roadgpt import judge, simulate
 from roadgpt.errors import UsageError
-from roadgpt.network import Leg, Route
+from roadgpt.network import Leg, Route, road_from_json
 from roadgpt.network.lanes import lanes_of
 from roadgpt.network.opendrive import ImportedMap, read_map
 from roadgpt.network.paved import filled
@@ -195,8 +196,26 @@ CLIFF = '<elevationProfile><elevation s="0" a="0" b="46"/></elevationProfile>'
         ("306", "no", "+", 75, "priority"),
         ("1000001", "yes", "+", 70, "lights"),
         ("206", "no", "-", 75, "none"),
-        ("206", "no", "+", 5, "none"),
+        ("206", "no", "+", 5, "stop"),
+        ("1000001", "yes", "+", 5, "none"),
         ("274", "no", "+", 75, "none"),
+        ("1000002", "yes", "+", 75, "none"),
+        ("1000007", "yes", "+", 75, "none"),
+        ("1000013", "yes", "+", 75, "none"),
+        ("1000011", "yes", "+", 75, "lights"),
+        ("trafficLight_pedestrian", "yes", "+", 75, "none"),
+        ('224" name="bus stop', "no", "+", 75, "none"),
+        ('283" name="No Stopping', "no", "+", 75, "none"),
+        ('286" name="stop restricted', "no", "+", 75, "none"),
+        ('-1" name="bus stop', "no", "+", 75, "none"),
+        ('-1" name="Sign_Stop', "no", "+", 75, "stop"),
+        ('-1" name="YieldSign_01', "no", "+", 75, "yield"),
+        ('-1" name="give way sign', "no", "+", 75, "yield"),
+        ('R1" subtype="1" country="US', "no", "+", 75, "stop"),
+        ('206" country="NO', "no", "+", 75, "priority"),
+        ('204" country="NO', "no", "+", 75, "stop"),
+        ('206" country="CN', "no", "+", 75, "none"),
+        ('601.1" country="GB', "no", "+", 75, "stop"),
     ],
 )
 def test_signs_and_lights(tmp_path: Path, kind: str, changes: str, way: str, s: float, control: str) -> None:
@@ -204,7 +223,70 @@ def test_signs_and_lights(tmp_path: Path, kind: str, changes: str, way: str, s: 
     found = read(tmp_path, *crossing(signals=f"<signals>{sign}</signals>"))
     arms = {arm.end.road: arm.control for arm in found.network.junctions[0].arms}
     assert arms == {1: control, 2: "none"}  # no lane of road 2 leads into the junction
-    assert any("signs of type 274" in remark for remark in found.remarks) == (kind == "274")
+    number = kind.partition('"')[0]
+    named = f"left out: signs {'without a type' if number == '-1' else f'of type {number}'}"
+    assert any(remark.startswith(named) for remark in found.remarks) == (control == "none")
+
+
+def test_a_sign_before_a_joint_applies_to_the_junction_behind_it(tmp_path: Path) -> None:
+    """The road ends 80 m before the junction, and another one goes on; the sign stands 120 m before it."""
+    sign = SIGN.format(s=40, way="-", changes="no", kind="206")  # against the road, which is driven backwards
+    lanes = section(0, lane(1, predecessor=-1), lane(-1))
+    before = road(
+        3,
+        (0, 0, math.pi, 60),
+        lanes,
+        to("predecessor", "road", 1, "start"),
+        more=f"<signals>{sign}</signals>",
+    )
+    parts = [before, *crossing()]
+    parts[1] = parts[1].replace("<link>", "<link>" + to("predecessor", "road", 3, "start"), 1)
+    found = read(tmp_path, *parts)
+    assert over_roads(lanes_of(found.network), [(3,), (1,), (2,)])[0] == Leg(3, 1)
+    assert {arm.end.road: arm.control for arm in found.network.junctions[0].arms} == {1: "stop", 2: "none"}
+
+
+PAINTED = '<object id="9" type="roadMark" subtype="signalLines" s="{s}" orientation="{way}"/>'
+
+
+@pytest.mark.parametrize("kind", ["206", "205", "1000001"])
+@pytest.mark.parametrize("as_object", [False, True])
+def test_a_stop_line_lies_where_the_file_has_it(tmp_path: Path, kind: str, as_object: bool) -> None:
+    """The line 0.5 m wide whose middle lies at 75 m is entered at 74.75 m; the road ends at 80 m."""
+    signs = SIGN.format(s=79, way="+", changes="yes", kind=kind)
+    line = SIGN.format(s=75, way="+", changes="no", kind="294") if not as_object else ""
+    more = f"<signals>{signs}{line}</signals>"
+    more += f"<objects>{PAINTED.format(s=75, way='+')}</objects>" if as_object else ""
+    found = read(tmp_path, *crossing(signals=more))
+    assert found.remarks == ()
+    route = Route.along(found.network, over_roads(lanes_of(found.network), [(1,), (2,)]))
+    assert route.passages[0].line == pytest.approx(74.75)
+    again = road_from_json(route.to_json())
+    assert isinstance(again, Route)
+    assert lanes_of(again.network)[Leg(1, -1)].before_line == pytest.approx(5.25)
+    alone = read(tmp_path, *crossing(signals=f"<signals>{line}</signals>"))
+    assert any("signs of type 294" in each for each in alone.remarks) != as_object
+
+
+@pytest.mark.parametrize("both", [False, True])
+def test_lanes_with_ids_of_the_wrong_sign_are_those_of_their_sides(tmp_path: Path, both: bool) -> None:
+    """All ids and links of the map with the other sign, or those on the right alone where there are no left
+    ones."""
+    right = section(0, lane(-1, successor=-1, predecessor=-1))
+    parts = crossing()
+    if not both:
+        parts = [each.replace(TWO, right) for each in parts]
+    there = read(tmp_path, *parts)
+    swapped = [
+        re.sub('(id|from|to)="(-?)1"(?= type="dr| to|/>)', lambda m: f'{m[1]}="{"" if m[2] else "-"}1"', each)
+        for each in parts
+    ]
+    found = read(tmp_path, *swapped)
+    assert found.network.following == there.network.following
+    assert [each for each in found.remarks if "ids of its lanes have the wrong sign" in each]
+    for one, two in zip(there.network.roads, found.network.roads, strict=True):
+        assert one.road.at([0.0, 9.0], -1.75) == pytest.approx(two.road.at([0.0, 9.0], -1.75))
+        assert one.profile.lanes.keys() == two.profile.lanes.keys()
 
 
 def test_what_a_map_says_of_speed_and_friction_is_that_of_its_lanes(tmp_path: Path) -> None:
@@ -348,6 +430,12 @@ def test_routes_between_points_and_at_random(tmp_path: Path) -> None:
             between(lanes, start, goal)
     assert way in random_routes(lanes, 5, 0)
     assert random_routes(lanes, 5, 0) == random_routes(lanes, 5, 0)
+    long = [road(11 + n, (0, 50 + 20 * n, 0, 400), TWO) for n in range(9)]
+    ways = random_routes(lanes_of(read(tmp_path, *crossing(), *long).network), 9, 0)
+    assert ways == [way]  # the one way through the junction, not the long roads beside it
+    short = [road(11 + n, (0, 50 + 20 * n, 0, 90 if n else 110), TWO) for n in range(4)]
+    only = lanes_of(read(tmp_path, *short).network)
+    assert {leg.road for found in random_routes(only, 5, 0) for leg in found} == {11}
     with pytest.raises(UsageError, match="no way leads on from road 1 of the route"):
         over_roads(lanes, [(2,), (1,)])
     with pytest.raises(UsageError, match="inside a junction"):

@@ -59,7 +59,7 @@ def test_all_lanes_with_their_widths_and_marks(tmp_path: Path) -> None:
         assert profile.rims(s).right == pytest.approx(-5.0 - width)
     assert found.lane_width == 3.45  # half of the road is narrower
     assert found.remarks == (
-        "the car keeps to lane 2 from the centre line, the rightmost that is 2 m wide everywhere",
+        "the car keeps to lane 2 from the centre line, the outermost that is 2 m wide everywhere",
     )
 
 

@@ -343,6 +343,8 @@ def _routes(
         ways = random_routes(lanes, count, seed)
         if not ways:
             raise UsageError("no route leads through the map; view it, and name roads with --route")
+        if len(ways) < count:
+            warn(f"{len(ways)} different routes were found, and {count} asked for")
         return ways
     return [()]
 
@@ -438,6 +440,6 @@ def _write(
         out.parent.mkdir(parents=True, exist_ok=True)
         out.write_text(json.dumps({"world": world, **origin, **road.to_json()}) + "\n", encoding="utf-8")
     if not is_only:
-        return ""
+        return f"{road.length:,.0f} m, for traffic on the left."
     heights = ups_and_downs(road.sample().z)
     return sentence(describe(road)) + (f" Up and down: {heights} m." if " " in heights else "")

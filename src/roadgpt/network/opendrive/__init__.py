@@ -1,4 +1,4 @@
-"""Reads ASAM OpenDRIVE files, versions 1.1 to 1.8. Main functions: ``read_map`` for whole maps, and
+"""Reads ASAM OpenDRIVE files, versions 1.1 to 1.9. Main functions: ``read_map`` for whole maps, and
 ``read_opendrive`` for one road of a file.
 
 tree        reads the XML within limits and without entities; sorts the records of a road by station

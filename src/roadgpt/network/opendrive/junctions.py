@@ -2,12 +2,13 @@
 
 The kind of a junction follows from the angles between its roads. Signs are those of the German catalogue,
 which most maps use (205 give way, 206 stop, 301 and 306 priority), of the American one (R1-1, R1-2), or have
-such a name; a signal that changes is a light. A sign applies to the junction behind it."""
+such a name and no type; in countries with numbers of their own, only these count. Lights are those for cars.
+A sign applies to the junction behind it, also over roads that lead there without a junction between."""
 
 import math
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
@@ -18,7 +19,7 @@ import numpy as np
 from roadgpt.brief.junctions import Control
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import wrapped
-from roadgpt.network.markings import CROSSWALK
+from roadgpt.network.markings import CROSSWALK, STOP_LINE, line_before
 from roadgpt.network.network import (
     OTHER_CONTACT,
     Arm,
@@ -39,17 +40,28 @@ from roadgpt.network.pose import Point
 
 PARALLEL = 30.0  # degrees; arms that are closer together belong to a merge or an exit
 BEFORE = 60.0  # m before a junction, within which a sign or a light applies to it
+FARTHEST = 150.0  # m, the same for a sign if there is none within ``BEFORE``
+MOVED = 0.1  # m; a stop line that is farther from its usual place keeps its own
 CROSSING = 25.0  # m from a junction, within which a crosswalk belongs to it
 SIGNS: Mapping[str, Control] = {
-    **dict.fromkeys(("206", "r1-1", "stop"), "stop"),
-    **dict.fromkeys(("205", "r1-2", "yield"), "yield"),
+    **dict.fromkeys(("206", "r1-1"), "stop"),
+    **dict.fromkeys(("205", "r1-2"), "yield"),
     **dict.fromkeys(("306", "301"), "priority"),
+    **dict.fromkeys(("gb 601.1", "no 204"), "stop"),
+    **dict.fromkeys(("gb 602", "no 202"), "yield"),
+    "no 206": "priority",
 }
+OWN_NUMBERS = {"uk": "gb", "gbr": "gb", "nor": "no", "chn": "cn", "jpn": "jp", "kor": "kr", "fin": "fi"}
+"""The countries whose catalogues have other numbers than the German one, by their other codes."""
 NAMED: Mapping[str, Control] = {"stop": "stop", "yield": "yield", "give way": "yield", "giveway": "yield"}
-LIGHTS = re.compile(r"10000(01|02|07|08|09|10|11|12|13|20)|traffic.?light.*")
-"""The types of lights in OpenDRIVE's own catalogue of signals."""
+SAYS_NOTHING = ("", "-1", "0", "none", "unknown")  # types that leave it to the name what a sign means
+AROUND_NAMES = {"sign", "signs", "traffic", "road", "stencil", "post", "us", "de", "stvo"}
+LIGHTS = re.compile(r"10000(01|09|10|11|12|20)|traffic.?light.*")
+"""The types of lights for cars in OpenDRIVE's own catalogue of signals; 1000002, 1000007 and 1000013 are for
+people on foot and on bicycles, 1000008 only flashes yellow."""
+NOT_FOR_CARS = re.compile(r"pedestrian|bicycle|bike|cycl|tram|crosswalk")
 STRONGEST: tuple[Control, ...] = ("lights", "stop", "yield", "priority", "none")
-PAINTED = ("294", "341")  # stop line, give-way line: what the signs already say
+PAINTED = ("294", "341")  # stop line, give-way line
 LARGEST_RING = 100.0  # m, radius
 FULL = 0.35  # rad, by which the roads and ways around a roundabout may fail to make a full turn
 ROUND = 0.15  # ratio by which the distances from the middle of a roundabout may differ
@@ -73,6 +85,7 @@ class Joining:
         self.file_of: dict[int, FileRoad] = {}
         self.ways: dict[str, list[tuple[int, Way]]] = {}
         self.continuations: dict[frozenset[RoadEnd], Continuation] = {}
+        self.used = set[Element]()  # the signals and lines that a junction has
         self.junctions: dict[str, Junction] = {}
         for road in roads:
             if not road.junction:
@@ -156,7 +169,9 @@ class Joining:
                 self.remarks.add("it is linked to a road that is left out or not there", f"road {road.id}")
             return
         here, there = self._lanes_at(road.id, contact), self._lanes_at(link[1], link[2])
-        pairs = road.links_at(contact) | {(b, a) for a, b in self.files[link[1]].links_at(link[2])}
+        next_road = self.files[link[1]]
+        pairs = road.links_at(contact, next_road)
+        pairs |= {(b, a) for a, b in next_road.links_at(link[2], road)}
         if not pairs:
             self.remarks.add(UNLINKED, f"road {road.id}")
             same = 1 if contact != link[2] else -1
@@ -210,13 +225,18 @@ class Joining:
         road, way = found
         first, last = (way.at_start, way.at_end) if way.is_along else (way.at_end, way.at_start)
         here, there = self._lanes_at(*links[0][1:]), self._lanes_at(*links[1][1:])
-        into = {(int(number(each, "from")), int(number(each, "to"))) for each in node.findall("laneLink")}
+        from_road, next_road = (self.files[each[1]] for each in (links[0], links[1]))
+        one, two = (-1 if each.is_swapped else 1 for each in (from_road, file))
+        into = {
+            (one * int(number(each, "from")), two * int(number(each, "to")))
+            for each in node.findall("laneLink")
+        }
         first_end, last_end = ("start", "end") if way.is_along else ("end", "start")
-        into = into or {(b, a) for a, b in file.links_at(first_end)}
-        out, next_road = file.links_at(last_end), self.files[links[1][1]]
+        into = into or {(b, a) for a, b in file.links_at(first_end, from_road)}
+        out = file.links_at(last_end, next_road)
         name = "predecessor" if links[1][2] == "start" else "successor"
         if next_road.ends(name) == ("road", file.id, last_end):
-            out |= {(b, a) for a, b in next_road.links_at(links[1][2])}
+            out |= {(b, a) for a, b in next_road.links_at(links[1][2], file)}
         onward = {last[a]: there[b] for a, b in sorted(out) if a in last and b in there}
         incoming, outgoing = self.members[before.road], self.members[after.road]
         lanes = tuple(
@@ -240,7 +260,8 @@ class Joining:
         around = np.arctan2(*(places - middle).T[::-1])
         order = [ends[n] for n in np.argsort(around, kind="stable")]
         controls = self._controls(order, connections, node)
-        arms = tuple(Arm(end, self._pose(end)[2], controls[end], False) for end in order)
+        lines = {end: self._line(end) if controls[end] not in ("none", "priority") else None for end in order}
+        arms = tuple(Arm(end, self._pose(end)[2], controls[end], False, lines[end]) for end in order)
         point = self._meeting(order)
         return Junction(junction, self._kind(arms), arms, tuple(connections), point, 0.0)
 
@@ -280,15 +301,21 @@ class Joining:
     ) -> dict[RoadEnd, Control]:
         found: dict[RoadEnd, set[Control]] = {end: {"none"} for end in ends}
         for end in ends:
-            for control, away in self._signs(end):
-                if away <= BEFORE:
-                    found[end].add(control)
+            before = self._signals(end)
+            signs = [(said, away, each) for away, each in before if (said := self._meaning(each))]
+            near = [each for each in signs if each[1] <= BEFORE]
+            far = [each for each in signs if each[0] != "lights" and each[1] <= FARTHEST]
+            for control, _, signal in near or far[:1]:
+                found[end].add(control)
+                self.used.add(signal)
         for each in connections:
             file = self.file_of[each.road]
             way = next(way for road, way in self.ways[file.id] if road == each.road)
-            for control, orientation, _ in _signals(file, self._signal_types):
-                if orientation in ("none", "+" if way.is_along else "-"):
-                    found[each.incoming].add(control)
+            for signal in file.node.findall("signals/*"):
+                said, its_way = self._meaning(signal), signal.get("orientation", "none")
+                if said and its_way in ("none", "+" if way.is_along else "-"):
+                    found[each.incoming].add(said)
+                    self.used.add(signal)
         ranks: tuple[tuple[str, Control], ...] = (("high", "priority"), ("low", "yield"))
         for priority in node.findall("priority"):
             for name, control in ranks:
@@ -299,15 +326,43 @@ class Joining:
         into = {end: self.members[end.road].ids_towards(end.contact) for end in ends}
         return {end: control if into[end] else "none" for end, control in chosen.items()}
 
-    def _signs(self, end: RoadEnd) -> Iterator[tuple[Control, float]]:
-        """Yields the signs and lights for traffic towards an end of a road, with their distance from it."""
-        file = self.file_of[end.road]
-        if end.road != self.parts[file.id][-1 if end.contact == "end" else 0]:
-            return
-        length = file.whole.sections[-1].end
-        for control, orientation, s in _signals(file, self._signal_types):
-            if orientation in ("none", "+" if end.contact == "end" else "-"):
-                yield control, length - s if end.contact == "end" else s
+    def _signals(self, end: RoadEnd, path: str = "signals/*") -> list[tuple[float, Element]]:
+        """Returns the signals, or the objects, for traffic towards an end of a road and of those that lead
+        there without a junction, with their distances from it in metres; the nearest is the first one."""
+        found, passed, away, at = list[tuple[float, Element]](), set[RoadEnd](), 0.0, end
+        while at not in passed and away <= FARTHEST:
+            passed.add(at)
+            file, ends = self.file_of[at.road], at.contact == "end"
+            if at.road != self.parts[file.id][-1 if ends else 0]:
+                break
+            length = file.whole.sections[-1].end
+            for node in file.node.findall(path):
+                if node.get("orientation", "none") in ("none", "+" if ends else "-"):
+                    s = number(node, "s")
+                    found.append((away + (length - s if ends else s), node))
+            away += length
+            start = RoadEnd(self.parts[file.id][0 if ends else -1], OTHER_CONTACT[at.contact])
+            at = self._joined.get(start, end)
+        return sorted(found, key=lambda each: each[0])
+
+    @cached_property
+    def _joined(self) -> dict[RoadEnd, RoadEnd]:
+        pairs = [tuple(each) for each in self.continuations]
+        return {one: two for pair in pairs for one, two in (pair, pair[::-1])}
+
+    def _line(self, end: RoadEnd) -> float | None:
+        """Returns the distance in metres from an end of a road to the stop line of the file; None without."""
+        painted = [each for each in self._signals(end) if each[1].get("type") in PAINTED]
+        painted += [each for each in self._signals(end, "objects/object") if _is_line(each[1])]
+        near = [each for each in painted if each[0] <= BEFORE]
+        self.used |= {node for _, node in near}
+        return max(min(away for away, _ in near) - STOP_LINE / 2, 0.0) if near else None
+
+    def _meaning(self, signal: Element) -> Control | None:
+        """Returns what a signal or a reference to one means at a junction; None if nothing."""
+        if signal.tag == "signalReference":
+            return self._signal_types.get(signal.get("id", ""))
+        return _control(signal) if signal.tag == "signal" else None
 
     @cached_property
     def _signal_types(self) -> Mapping[str, Control]:
@@ -323,10 +378,15 @@ class Joining:
         crossed = self._crosswalks()
         junctions = []
         for each in self.junctions.values():
-            arms = tuple(replace(arm, crosswalk=arm.end in crossed) for arm in each.arms)
-            junctions.append(replace(each, arms=arms))
+            arms = [replace(arm, crosswalk=arm.end in crossed) for arm in each.arms]
+            usual = [line_before(replace(arm, line=None)) for arm in arms]
+            arms = [
+                replace(arm, line=None) if arm.line is not None and abs(arm.line - place) < MOVED else arm
+                for arm, place in zip(arms, usual, strict=True)
+            ]
+            junctions.append(replace(each, arms=tuple(arms)))
         for file in self.files.values():
-            tell_unread(file.node, self.remarks, f"road {file.id}", is_alone=False)
+            tell_unread(file.node, self.remarks, f"road {file.id}", self.used)
             if file.junction and file.id not in self.ways:
                 self.remarks.add("left out: connecting roads that no junction names", f"road {file.id}")
         at_junctions = {arm.end for junction in junctions for arm in junction.arms}
@@ -357,17 +417,18 @@ class Joining:
         return found
 
 
-def tell_unread(road: Element, remarks: Remarks, where: str, is_alone: bool) -> None:
-    """Adds remarks about objects and signs of a road that are not used. A road that ``is_alone`` has no
-    junction to which crosswalks, signs and lights would belong."""
+def tell_unread(road: Element, remarks: Remarks, where: str, used: Collection[Element] | None) -> None:
+    """Adds remarks about objects and signs of a road that are not used; None says that there is no junction
+    to which crosswalks, signs and lights would belong."""
     for node in road.findall("objects/object"):
         kind = node.get("type", "")
-        if is_alone or kind not in ("crosswalk", "roadMark"):
+        if used is None or kind not in ("crosswalk", "roadMark"):
             remarks.add(f"left out: objects {_of_type(kind)}", where)
     for node in road.findall("signals/*"):
-        kind = node.get("type", "")
-        if is_alone or (node.tag == "signal" and _control(node) is None and kind not in PAINTED):
-            remarks.add(f"left out: signs {_of_type(kind)}", where)
+        if node not in (used or ()):
+            no_place = used is not None and node.tag == "signal" and _control(node) is not None
+            more = " that stand before no junction" if no_place else ""
+            remarks.add(f"left out: signs {_of_type(node.get('type', ''))}{more}", where)
 
 
 def _of_type(kind: str) -> str:
@@ -380,24 +441,23 @@ def _is_number(name: str) -> bool:
 
 def _control(node: Element) -> Control | None:
     """Returns what a signal means at a junction; None if nothing."""
-    kind, name = node.get("type", "").lower(), node.get("name", "").lower()
+    kind, name = node.get("type", "").strip().lower(), node.get("name", "")
     if LIGHTS.fullmatch(kind.replace(".", "")) and node.get("dynamic", "yes") == "yes":
-        return "lights"
-    if kind in SIGNS:
-        return SIGNS[kind]
-    return next((control for word, control in NAMED.items() if word in name and "line" not in name), None)
+        return None if NOT_FOR_CARS.search(f"{kind} {name.lower()}") else "lights"
+    country = node.get("country", "").strip().lower()
+    country = OWN_NUMBERS.get(country, country)
+    own = f"{country} " if country in OWN_NUMBERS.values() and kind[:1].isdigit() else ""
+    for said in (kind, f"{kind}-{node.get('subtype', '').strip().lower()}"):
+        if f"{own}{said}" in SIGNS:
+            return SIGNS[f"{own}{said}"]
+    words = re.findall("[A-Z]?[a-z]+|[A-Z]+", name if kind in SAYS_NOTHING else node.get("type", ""))
+    return NAMED.get(" ".join(word.lower() for word in words if word.lower() not in AROUND_NAMES))
 
 
-def _signals(file: FileRoad, types: Mapping[str, Control]) -> Iterator[tuple[Control, str, float]]:
-    """Yields the signs and lights of a road, also those of other roads to which it refers: what they mean,
-    for which direction of traffic (+, - or none), and at which station in metres."""
-    for node in file.node.findall("signals/*"):
-        if node.tag == "signalReference":
-            control = types.get(node.get("id", ""))
-        else:
-            control = _control(node) if node.tag == "signal" else None
-        if control is not None:
-            yield control, node.get("orientation", "none"), number(node, "s")
+def _is_line(node: Element) -> bool:
+    """Returns whether an object is a line across a road at which traffic stops or gives way."""
+    said = re.sub("[^a-z]", "", f"{node.get('subtype', '')} {node.get('name', '')}".lower())
+    return node.get("type") in ("roadMark", *SAYS_NOTHING) and bool(re.search("signalline|stopline", said))
 
 
 def _with_roundabouts(network: Network) -> Network:

@@ -11,6 +11,7 @@ import numpy as np
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry.elevation import closed
+from roadgpt.network.network import Leg, Network, NetworkRoad
 from roadgpt.network.opendrive.junctions import tell_unread
 from roadgpt.network.opendrive.roads import (
     FileRoad,
@@ -22,6 +23,8 @@ from roadgpt.network.opendrive.roads import (
     world_values,
 )
 from roadgpt.network.opendrive.tree import DRIVING, NUMBER, Remarks, read_tree
+from roadgpt.network.road_or_route import ONLY
+from roadgpt.network.route import Route
 from roadgpt.network.stretch import turned
 from roadgpt.road import Profile, Road, World
 from roadgpt.road.profile import Marking, as_cubics
@@ -35,9 +38,9 @@ class ImportedRoad:
     """A road that was read from an OpenDRIVE file, with its lane width, speed limit and friction."""
 
     road: Road
-    """The road. Its ``profile`` is None if the file describes a cross-section like the default one of a
-    World: one lane in each direction, both of the same constant width, with shoulders of equal constant width
-    and the default markings."""
+    """The road, or a Route where traffic drives on the left. Its ``profile`` is None if the file describes a
+    cross-section like the default one of a World: one lane in each direction, both of the same constant
+    width, with shoulders of equal constant width and the default markings, for traffic on the right."""
     id: str
     name: str
     lane_width: float  # width of the driven lane in metres; the median if it varies
@@ -109,13 +112,16 @@ def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:
         made, values = _alone(file, remarks)
     except UsageError as error:
         raise UsageError(f"{path}: road {id_}: {error}") from error
-    tell_unread(node, remarks, "", is_alone=True)
+    tell_unread(node, remarks, "", None)
     others = unread(node) | ({f"junction {file.junction[:40]}"} if file.junction else set())
     profile = made.profile
     assert profile is not None
     s = np.linspace(0.0, made.length, PLACES)
     width, shoulder = (round(float(np.median(each)), 4) for each in (profile.width(s), profile.shoulder(s)))
-    is_usual = profile == Profile.of(1, 1, width, shoulder)
+    is_usual = not file.left_hand and profile == Profile.of(1, 1, width, shoulder)
+    if file.left_hand:  # which only a network can hold
+        network = Network((NetworkRoad(ONLY, made.mirrored),))
+        made = Route.along(network, (Leg(ONLY, -profile.driven_id),)).on_ground()
     return ImportedRoad(
         made.with_profile(None) if is_usual else made,
         id_,
@@ -130,19 +136,20 @@ def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:
 
 def _alone(file: FileRoad, remarks: Remarks) -> tuple[Road, dict[str, float]]:
     """Returns a road that leads in the direction in which most of its lanes are driven on the right, and what
-    it states about its speed limit and friction. Raises UsageError if no road file can hold it."""
-    if file.left_hand:
-        remarks.add("it is made for left-hand traffic, and is driven on the right here", "")
-    road, _ = RoadBuilder(replace(file, left_hand=False), remarks).build(file.whole)
+    it states about its speed limit and friction; where traffic drives on the left, that of the mirror image.
+    Raises UsageError if no road file can hold it."""
+    road, _ = RoadBuilder(file, remarks).build(file.whole)
+    hand, own_side, other = (1, "left", "right") if file.left_hand else (-1, "right", "left")
+    road = road.mirrored if file.left_hand else road
     profile = road.profile
     assert profile is not None
     along, against = (
         sum(each.end - each.start for each in file.whole.sections if any(n * side > 0 for n in each.driving))
-        for side in (-1, 1)
+        for side in (hand, -hand)
     )
     if not profile.along_ids or (profile.against_ids and against > 2 * along):
-        what = "no lane to the right of its line is driven"
-        remarks.add(f"{what}; the road follows the direction of its left lanes", "")
+        what = f"no lane to the {own_side} of its line is driven"
+        remarks.add(f"{what}; the road follows the direction of its {other} lanes", "")
         road = turned(road)
         assert road.profile is not None
         profile = road.profile
@@ -186,7 +193,7 @@ def _driven(profile: Profile, length: float, remarks: Remarks) -> Profile:
     wide = [n for n, width in widths.items() if not width.beyond(LANE_WIDTHS[0], inf)]
     driven = wide[-1] if wide else min(widths)
     if driven != min(widths):
-        which = f"the rightmost that is {LANE_WIDTHS[0]:g} m wide everywhere"
+        which = f"the outermost that is {LANE_WIDTHS[0]:g} m wide everywhere"
         place = [*widths].index(driven) + 1
         remarks.add(f"the car keeps to lane {place} from the centre line, {which}", "")
     right = list(profile.right)

@@ -142,6 +142,7 @@ class FileRoad:
     heights: CubicProfile
     offset: CubicProfile
     angle: CubicProfile | None  # the superelevation in radians, positive where it falls to the right
+    is_swapped: bool  # whether the ids of its lanes had the wrong signs
     whole: FileSections
     stretches: list[LaneStretch]
     joints: list[Pairs]  # which lanes continue each other from one stretch to the next
@@ -158,9 +159,10 @@ class FileRoad:
         kind = node.get("elementType", "road")
         return kind, node.get("elementId", ""), node.get("contactPoint", "start")
 
-    def links_at(self, contact: str) -> Pairs:
-        """Returns the links of the lanes at an end to those of the next road, by ids in the file."""
-        return self.links[0 if contact == "start" else 1]
+    def links_at(self, contact: str, other: "FileRoad") -> Pairs:
+        """Returns the links of the lanes at an end to those of the ``other`` road, by ids in the file."""
+        sign = 1 if self.is_swapped == other.is_swapped else -1
+        return {(own, sign * there) for own, there in self.links[0 if contact == "start" else 1]}
 
 
 def read_road(node: Element, remarks: Remarks) -> FileRoad | None:
@@ -169,12 +171,16 @@ def read_road(node: Element, remarks: Remarks) -> FileRoad | None:
     road_id = node.get("id", "?")[:40]
     where = f"road {road_id}"
     in_order(node, remarks, where)
+    is_swapped = _signed(node, remarks, where)
     line = placed_line(node, remarks, where)
     length = float(line.of_file[-1])
     sections = _sections(node, float(line.of_file[0]), length)
     if not any(section.driving for section in sections):
         remarks.add("left out: roads without a lane for cars", where)
         return None
+    if any(lane.get("type") == "bidirectional" for lane in node.findall("lanes/laneSection/*/lane")):
+        what = "lanes for both directions are driven in one only here, that of their side of the road"
+        remarks.add(what, where)
     heights = cubics(node.findall("elevationProfile/elevation"), "s") or CubicProfile.constant(0.0)
     check_grade(heights, length)
     if jump := _jump(heights, length):
@@ -196,6 +202,7 @@ def read_road(node: Element, remarks: Remarks) -> FileRoad | None:
         heights,
         cubics(node.findall("lanes/laneOffset"), "s") or CubicProfile.constant(0.0),
         cubics(node.findall("lateralProfile/superelevation"), "s"),
+        is_swapped,
         whole,
         *_stretches(whole),
         entry,
@@ -207,6 +214,26 @@ def read_road(node: Element, remarks: Remarks) -> FileRoad | None:
         ],
         (sections[0].links("predecessor"), sections[-1].links("successor")),
     )
+
+
+def _signed(road: Element, remarks: Remarks, where: str) -> bool:
+    """Gives the lanes of each side ids of the sign that they must have, also in their links; returns whether
+    all lanes had the other one."""
+    wrong, right = 0, 0
+    for side, sign in (("left", 1), ("right", -1)):
+        for holder in road.findall(f"lanes/laneSection/{side}"):
+            for lane in holder.findall("lane"):
+                own = sign * int(number(lane, "id"))
+                wrong, right = wrong + (own < 0), right + (own > 0)
+                if own == 0:
+                    holder.remove(lane)
+                    remarks.add("left out: lanes beside the centre line that have its id, 0", where)
+                for each in (lane, *lane.findall("link/*")) if own < 0 else ():
+                    each.set("id", str(-int(number(each, "id"))))
+    if wrong:
+        what = "ids of its lanes have the wrong sign for their side, which is changed"
+        remarks.add(f"{what}: left lanes have positive ones, right lanes negative ones", where)
+    return wrong > 0 and not right
 
 
 def unread(road: Element) -> set[str]:

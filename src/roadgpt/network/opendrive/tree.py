@@ -50,6 +50,7 @@ VALUES = frozenset({"a", "b", "c", "d", "inner", "outer"})  # an element says no
 OTHER_KINDS = {"osm": "Lanelet2 or OpenStreetMap", "net": "SUMO", "commonRoad": "CommonRoad"}
 """Whose XML files begin with these elements."""
 IN_HEADER = ("geoReference", "offset")
+NEWEST = "1.9"
 OURS = "RoadGPT"  # vendor of files that RoadGPT wrote: their georeference has no meaning
 RAMPS = ("entry", "exit", "onRamp", "offRamp", "connectingRamp", "mwyEntry", "mwyExit")
 DRIVING = ("driving", "bidirectional", "slipLane", *RAMPS)
@@ -194,11 +195,18 @@ class _Reader:
         if self.depth == 1 and tag != "OpenDRIVE":
             kind = f", but a file of {OTHER_KINDS[tag]}" if tag in OTHER_KINDS else ""
             raise UsageError(f"it is XML but not OpenDRIVE{kind}: it begins with <{tag[:40]}>")
-        if self.hidden or (self.stack and tag not in READ and self.stack[-1].tag != "geometry"):
+        is_temporary = self.stack and _is_temporary(attributes)
+        if (
+            self.hidden
+            or is_temporary
+            or (self.stack and tag not in READ and self.stack[-1].tag != "geometry")
+        ):
             self.hidden += 1
             values = [attributes[name].strip("+-0.e") for name in VALUES & attributes.keys()]
             is_told = self.hidden == 1 and tag not in SILENT and (any(values) or not values)
-            if tag in COUNTED or is_told:
+            if is_temporary and self.hidden == 1:
+                self.passed[f"temporary <{tag[:30]}>"] += 1
+            elif tag in COUNTED or is_told:
                 self.passed[COUNTED.get(tag, f"<{tag[:30]}>")] += 1
         elif self.stack:
             node = Element(tag, attributes)
@@ -217,8 +225,13 @@ class _Reader:
                 self.passed = Counter()
         elif tag in IN_HEADER and not self.ids:
             self.header.add(tag)
-        elif tag == "header" and attributes.get("vendor") == OURS:
-            self.header.add(OURS)
+        elif tag == "header":
+            if (version := attributes.get("revMajor", "1").strip()) > NEWEST[:1]:
+                version = f"{version[:9]}.{attributes.get('revMinor', '0')[:9]}"
+                raise UsageError(
+                    f"it is OpenDRIVE {version}; only 1.1 to {NEWEST} are read, so save it as such"
+                )
+            self.header |= {OURS} if attributes.get("vendor") == OURS else set()
 
     def end(self, tag: str) -> None:
         """Handles the end tag of an XML element. A complete element is passed on."""
@@ -229,6 +242,13 @@ class _Reader:
             node = self.stack.pop()
             if not self.stack:
                 self.take(node, self.passed)
+
+
+def _is_temporary(attributes: Mapping[str, str]) -> bool:
+    """Returns whether an element is of the temporary layer of roadworks, which OpenDRIVE 1.9 lays over the
+    permanent one, or a temporary sign or object."""
+    layers = (value for name, value in attributes.items() if name.lower().endswith("layer"))
+    return "temporary" in layers or attributes.get("temporary") == "true"
 
 
 def in_order(road: Element, remarks: Remarks, where: str) -> None:
