@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from command_line import invoke
 from roadgpt import provenance
 from roadgpt.campaign.gate import Gate
-from roadgpt.errors import GateError
+from roadgpt.errors import GateError, UsageError
 from roadgpt.road import Road, World
 from roadgpt.run import Request, Run, Setup, prove, write_run
 
@@ -338,3 +338,17 @@ def test_a_margin_is_nothing_to_go_by_at_a_collision(tmp_path: Path) -> None:
     a_test(tmp_path, outcome="FAIL", scene=scene, cause="collision", keep_driving=True)
     worse = a_test(outcome="FAIL", scene=scene, cause="collision", margin=0.5, keep_driving=True)
     assert Gate(None, (), tmp_path).add("it", worse) == ""
+
+
+def test_a_baseline_that_was_judged_by_another_criterion_is_refused_by_name(tmp_path: Path) -> None:
+    scene = "car ahead v=0"
+    write_run(a_test(scene=scene), tmp_path)
+    setup = Setup(scenario="r157:cut_in")
+    assert setup.staged(World(), left_hand=False).limits.avoidable == "r157"
+    assert setup.staged(World().changed(avoidable="any"), left_hand=False).limits.avoidable == "any"
+    other = a_run(outcome="FAIL", world=World().changed(scene=scene, avoidable="rss"), setup=Setup())
+    with pytest.raises(UsageError, match=r"the criterion of its kind in the baseline .* by rss in it"):
+        Gate(None, (), tmp_path).add("it", replace(other, index=1, seed=1))
+    alone = a_run(outcome="FAIL", world=World().changed(avoidable="rss"), setup=Setup())
+    write_run(a_test(), tmp_path / "alone")
+    assert Gate(None, (), tmp_path / "alone").add("it", replace(alone, seed=1)).startswith("FAIL")

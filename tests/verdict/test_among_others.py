@@ -61,7 +61,8 @@ def test_a_rear_end_collision_is_told_with_everything() -> None:
     assert (verdict.outcome, verdict.cause, verdict.first_contact) == ("FAIL", "collision", contact)
     assert verdict.description == (
         "hit van 1 after 47 m at 54 km/h: its front met the rear of van 1, at 18 km/h, with 36 km/h of "
-        "difference and 54 % overlap; at fault; a careful driver (UN R157) brakes in time"
+        "difference and 54 % overlap; at fault; avoidable by any of four drivers: "
+        "careful driver avoids it, Reg157 collides, FSM avoids it, RSS avoids it"
     )
     assert (verdict.at_s, verdict.at_xy, verdict.at_time) == (found.at_s, found.at_xy, found.at_time)
     assert verdict.sbft_description == "Car collided"
@@ -103,14 +104,17 @@ def test_a_collision_that_nobody_could_avoid_is_no_failure() -> None:
     assert (verdict.outcome, verdict.cause) == ("UNAVOIDABLE", "collision")
     told = "was hit by car 2 after 58 m at 18 km/h: its rear met the front of car 2, "
     assert verdict.description.startswith(told)
-    assert "; not at fault; no reference driver (" in verdict.description
+    assert "; not at fault; not avoidable by any of four drivers: careful driver coll" in verdict.description
 
 
 def test_two_contacts_are_counted_and_the_first_one_is_the_cause() -> None:
     others = {f"cones_{n}": ("cones", straight(60.0 + 20 * n, -2, 0, 0)) for n in range(3)}
     verdict = judge(ROAD, scene(straight(10, -2, 0, 15), **others), WORLD)
     assert [each.other for each in verdict.incidents or ()] == ["cones 0", "cones 1", "cones 2"]
-    assert "; at fault; 3 times in all; a careful driver (" in verdict.description
+    assert (
+        "; at fault; 3 times in all; avoidable by any of four drivers: careful driver stops "
+        in verdict.description
+    )
     assert "standing" in verdict.description
 
 

@@ -159,13 +159,14 @@ def test_cut_ins_and_blows_from_behind() -> None:
     near = verdict(scene(own, car_1=("car", cuts_in(22, 10.0, 3.0, 1.0))))
     assert (near.outcome, near.avoided_by, near.kept, near.failed) == ("UNAVOIDABLE", (), False, False)
     assert near.description.endswith(
-        "; no reference driver (careful driver, Reg157, FSM, RSS) could have avoided it"
+        "; not avoidable by the careful driver of UN R157: careful driver collides, Reg157 collides, FSM "
+        "collides, RSS collides"
     )
     assert near.at_xy is not None
     assert Verdict.from_json(json.loads(json.dumps(near.to_json()))) == near
     far = verdict(scene(own, car_1=("car", cuts_in(50, 10.0, 1.0, 1.0))))
     assert (far.outcome, far.avoided_by) == ("FAIL", NAMES)
-    assert "; a careful driver (UN R157) brakes in time" in far.description
+    assert "; avoidable by the careful driver of UN R157: careful driver avoids it, Reg" in far.description
     behind = verdict(scene(straight(50, LANE, 0, 5), car_1=("car", straight(30, LANE, 0, 15))))
     assert (behind.outcome, behind.first_contact and behind.first_contact.at_fault) == ("UNAVOIDABLE", False)
     head_on = verdict(scene(own, car_1=("car", straight(180, LANE, np.pi, 14))))
@@ -203,7 +204,7 @@ def test_who_brakes_for_nothing_and_is_hit_from_behind() -> None:
         assert found.first_contact is not None
         assert (found.outcome, found.first_contact.face) == ("FAIL" if avoidable else "UNAVOIDABLE", "rear")
         told = f"avoidable: it had braked with {rate:.1f} m/s2 and nothing in its way called for it"
-        assert found.description.endswith(f"; at fault; {told}") == avoidable, (rate, more, limit)
+        assert (f"; at fault; {told}; " in found.description) == avoidable, (rate, more, limit)
         assert found.first_contact.at_fault == avoidable
     faster = scene(brakes(6.0), car_1=("car", straight(71, LANE, 0, 18)))  # would have come anyway
     assert verdict(faster).outcome == "UNAVOIDABLE"
@@ -346,3 +347,37 @@ def test_junit_skips_what_was_unavoidable(tmp_path: Any) -> None:
 def test_careful_is_the_first() -> None:
     assert DRIVERS[0] is CAREFUL
     assert tuple(each.said for each in DRIVERS) == NAMES
+
+
+STANDS = {"car_2": ("car", straight(120, LANE, 0, 0))}
+ESCAPES = ("car", lambda time: (40 + 15 * time, np.minimum(LANE + 1.5 * np.maximum(time - 3, 0), 1.5), 0))
+
+
+@pytest.mark.parametrize(
+    ("others", "criterion"),
+    [
+        ({"car_1": ("car", cuts_in(22, 10.0, 3.0, 1.0))}, "r157"),
+        ({"car_1": ("car", lead(40, 16, 6.0, 2.0))}, "r157"),  # brakes harder than 5 m/s2
+        ({"car_1": ("car", lead(40, 16, 4.0, 2.0))}, "any"),  # as in Euro NCAP's CCRb
+        ({"car_1": ESCAPES, **STANDS}, "r157"),  # leaves the lane before who stands there
+        (STANDS, "any"),
+        ({"car_1": ("car", straight(40, LANE, 0, 5))}, "any"),
+        ({"adult_1": ("adult", lambda time: (90 + 0 * time, -10 + 1.6 * time, np.pi / 2))}, "any"),
+        ({"car_1": ("car", straight(180, LANE, np.pi, 14))}, "any"),
+    ],
+)
+def test_the_criterion_is_that_of_un_r157_for_its_kinds_and_any_for_all_others(
+    others: Any, criterion: str
+) -> None:
+    """Whoever is named has to avoid it; the verdict tells of all four, and is read again with it."""
+    drive = scene(straight(10, LANE, 0, 16.0), **others)
+    usual = verdict(drive)
+    assert usual.criterion == criterion
+    assert Verdict.from_json(json.loads(json.dumps(usual.to_json()))) == usual
+    by = {"r157": NAMES[:1], "reg157": NAMES[1:2], "fsm": NAMES[2:3], "rss": NAMES[3:], "any": NAMES}
+    for name, whom in by.items():
+        found = verdict(drive, world().changed(speed_limit=60.0, avoidable=name))
+        assert (found.criterion, found.avoided_by) == (name, usual.avoided_by)
+        is_avoidable = not {*whom}.isdisjoint(found.avoided_by or ())
+        assert (found.outcome == "FAIL") == (is_avoidable or "avoidable: it" in found.description)
+        assert all(f"{each} " in found.description.partition("avoidable by")[2] for each in NAMES)

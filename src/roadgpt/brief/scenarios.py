@@ -51,6 +51,8 @@ class Scenario(NamedTuple):
     """The name of its nominal road in ``ROADS``, as a template like ``scene``."""
     scene: str
     """A scene as in plans, with what is computed of the parameters in braces."""
+    avoidable: str
+    """The criterion by which it is judged whether a collision was avoidable: see ``Limits.avoidable``."""
     parameters: Mapping[str, Sequence[Any]]
     """The nominal value of each, with its unit or what it means."""
     grid: Sequence[Mapping[str, Sequence[Any]]]

@@ -84,6 +84,12 @@ class Gate:
             (self._before[at] for at in alike),
             key=lambda each: (len(_differences(each, now)), BEST_FIRST.index(each.outcome)),
         )
+        there, here = (each.settings["avoidable"] or "the criterion of its kind" for each in (before, now))
+        if now.among and there != here:
+            raise UsageError(
+                f"whether a collision is avoidable was judged by {there} in the baseline {self._baseline}, "
+                f"and by {here} in {name}; give --avoidable as it was there, or another baseline"
+            )
         self._differences |= _differences(before, now)
         worse = ""
         if BEST_FIRST.index(now.outcome) > BEST_FIRST.index(before.outcome):

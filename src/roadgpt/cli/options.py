@@ -539,8 +539,8 @@ def _of_models() -> dict[str, tuple[Option, ...]]:
         each for part in (Site, CrossSection, Limits, World) for each in of_model(part, Heading.SITE, "world")
     ]
     order = (
-        "map_size", "scene", "ground", "speed_limit", "oracle", "oob_tolerance", "lane_departure", "lanes",
-        "lane_width", "lane_width_end", "bank", "shoulder", "friction",
+        "map_size", "scene", "ground", "speed_limit", "oracle", "oob_tolerance", "lane_departure",
+        "avoidable", "lanes", "lane_width", "lane_width_end", "bank", "shoulder", "friction",
     )  # fmt: skip
     world = tuple(named([ORACLE, *of_world], *order))
     names = (

@@ -53,6 +53,8 @@ NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 FRICTIONS = (0.0, 2.0)  # the first is not reached
 SPEEDS = (5 / 3.6, 300 / 3.6)  # m/s, of speed limits in options and files
 LANE_WIDTHS = (2.0, 10.0)  # m, of the driven lane in options and files
+Criterion = Literal["r157", "reg157", "rss", "fsm", "any"]
+"""Who has to avoid a collision, or it is unavoidable: one of the drivers of ``verdict.careful``, or any."""
 STEEPEST = 0.12  # ratio, largest superelevation of bends
 OWN = {"lanes": "1+1", "lane_width_end": None, "centre_line": None, "bank": "none"}
 """The fields that change the usual cross-section of two equal lanes, with their defaults. Of them and of the
@@ -72,6 +74,7 @@ FIELDS = {
     "speed_limit": "limits",
     "oob_tolerance": "limits",
     "lane_departure": "limits",
+    "avoidable": "limits",
     "min_radius": "limits",
     "max_grade": "limits",
     "z_floor": "site",
@@ -314,6 +317,13 @@ class Limits(BaseModel):
     )  # fmt: skip
     """Whether the test also fails as soon as a front tyre crosses the outer edge of a lane marking. Source:
     UN Regulation No. 157, 5.2.1."""
+    avoidable: Criterion | None = Field(
+        None, json_schema_extra=DRIVE | RARE,
+        description="Who has to avoid a collision, or it is UNAVOIDABLE: r157 (careful driver), reg157, rss, "
+        "fsm, or any of them. [default: as the scenario says, or by kind]",
+    )  # fmt: skip
+    """None: the careful driver of UN R157 where somebody cuts in, cuts out or brakes hard ahead, as that
+    regulation defines it, and else any (``verdict.avoidable``)."""
     min_radius: Positive = 14.326
     """Minimum radius of a turn in metres. The default is 47 ft, the tightest turn of the SBFT rules."""
     max_grade: Annotated[float, Field(gt=0, le=1)] = 0.15
@@ -387,7 +397,7 @@ class World(BaseModel):
 
     @model_serializer
     def _to_file(self) -> dict[str, Any]:
-        usual = OWN | {"scene": "", "ground": ""}
+        usual = OWN | {"scene": "", "ground": "", "avoidable": None}
         values = self.values().items()
         return {KEYS.get(name, name): value for name, value in values if usual.get(name, self) != value}
 

@@ -45,10 +45,12 @@ class Setup(Parts):
         return {name: value for name, value in values.items() if value or name not in ("tracks", "scenario")}
 
     def staged(self, world: World, left_hand: bool) -> World:
-        """Returns the World with the scene of the scenario for a side of traffic, and what its own adds."""
+        """Returns the World with the scene of the scenario for a side of traffic, and what its own adds, and
+        with the scenario's criterion, if none was given to this World."""
         if not self.scenario:
             return world
-        return world.changed(scene=scenario(self.scenario).onto(world.scene, left_hand))
+        one, given = scenario(self.scenario), world.limits.avoidable
+        return world.changed(scene=one.onto(world.scene, left_hand), avoidable=given or one.avoidable)
 
     def essence(self) -> Self:
         """Returns the Setup without the fields that may change when interrupted work is continued."""

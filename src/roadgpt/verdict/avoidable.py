@@ -13,6 +13,7 @@ moves as recorded; from the end of the recording, or from a contact that makes i
 ``docs/explanation/traffic.md`` has all definitions.
 """
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -35,6 +36,7 @@ from roadgpt.verdict.verdict import PARTLY, Incident, percent
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
     from roadgpt.road import Road, World
+    from roadgpt.road.world import Criterion
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -57,11 +59,25 @@ FRONTS = np.array(
 """R157, 5.2.3.3: speeds in m/s and the least time gaps in s; the least distance is 2 m."""
 
 
+CRITERIA: "Mapping[Criterion, tuple[str, tuple[Driver, ...]]]" = {
+    "r157": ("the careful driver of UN R157", DRIVERS[:1]),
+    "reg157": ("Reg157", DRIVERS[1:2]),
+    "fsm": ("FSM", DRIVERS[2:3]),
+    "rss": ("RSS", DRIVERS[3:]),
+    "any": ("any of four drivers", DRIVERS),
+}
+"""In words, and the drivers of whom one has to avoid a collision, or it was unavoidable."""
+
+
 class Avoidance(NamedTuple):
     """Whether and by whom a collision could have been avoided."""
 
     by: tuple[str, ...]
     """Those of the four drivers that avoid it."""
+    criterion: "Criterion"
+    """By which of CRITERIA it is judged whether it was avoidable."""
+    is_avoidable: bool
+    """Whether it was, by this criterion."""
     is_own_doing: bool
     """Whether the tested car brought it about itself."""
     said: str
@@ -72,16 +88,26 @@ def avoidance_of(road: "Road", drive: "Drive", world: "World", collision: Incide
     meeting = _Encounter(road, drive, world, collision)
     courses = {driver: _course(driver, meeting) for driver in DRIVERS}
     by = tuple(driver.said for driver, (hits, _) in courses.items() if not hits)
-    if CAREFUL.said in by:
-        said = f"a careful driver (UN R157) brakes in time{courses[CAREFUL][1]}"
-    elif by:
-        names = " and ".join(filter(None, [", ".join(by[:-1]), by[-1]]))
-        said = f"{names} would have braked in time, a careful driver (UN R157) not"
-    else:
-        said = "no reference driver (careful driver, Reg157, FSM, RSS) could have avoided it"
-    if own := meeting.own_doing() or _braked_for_nothing(road, drive, world, collision):
-        return Avoidance(by, True, f"avoidable: it {own}" + f"; {said}" * bool(by))
-    return Avoidance(by, False, said)
+    criterion = world.limits.avoidable or ("r157" if _is_of_r157(road, drive, world, meeting) else "any")
+    whose, whom = CRITERIA[criterion]
+    is_avoidable = any(driver.said in by for driver in whom)
+    each = ", ".join(f"{driver.said} {how}" for driver, (_, how) in courses.items())
+    said = f"{'' if is_avoidable else 'not '}avoidable by {whose}: {each}"
+    own = meeting.own_doing() or _braked_for_nothing(road, drive, world, collision)
+    said = f"avoidable: it {own}; {said}" if own else said
+    return Avoidance(by, criterion, is_avoidable, bool(own), said)
+
+
+def _is_of_r157(road: "Road", drive: "Drive", world: "World", meeting: "_Encounter") -> bool:
+    """Whether somebody cut in or braked hard ahead, as UN R157 defines it, or stands where a vehicle that was
+    ahead of the tested car left its lane."""
+    if meeting.cuts_in or meeting.brakes_hard:
+        return True
+    measured = measure(road, drive, world)
+    gap = measured.gap[measured.time <= meeting.at_time]
+    is_between = np.isfinite(gap) & (gap < gap[:, [meeting.number]])
+    has_left = np.isinf(gap[-1]) & (measured.distance[len(gap) - 1] > 0)
+    return meeting.stands and bool((is_between.any(axis=0) & has_left).any())
 
 
 def _braked_for_nothing(road: "Road", drive: "Drive", world: "World", collision: Incident) -> str:
@@ -116,14 +142,15 @@ def _braked_for_nothing(road: "Road", drive: "Drive", world: "World", collision:
 
 
 def _course(driver: Driver, meeting: "_Encounter") -> tuple[bool, str]:
-    """Returns whether a driver collides, and how close it comes to the other in words."""
+    """Returns whether a driver collides, and how it ends in words."""
     places, speeds = drive_on(driver, meeting.seen, meeting.free, FINE, meeting.first)
     ahead = meeting.along - places
     away = np.stack([ahead, meeting.t], axis=-1)
     apart = separation(away, np.zeros(len(ahead)), meeting.heading, meeting.half, meeting.halves).max(axis=-1)
     gap = (ahead - meeting.stretch - meeting.half[0])[(meeting.clearance < 0) & (ahead > 0)]
-    said = f" and stops {gap.min():.1f} m short" if len(gap) and not speeds[-1] else ""
-    return bool((apart < CORNER).any()), said
+    if (apart < CORNER).any():
+        return True, "collides"
+    return False, f"stops {gap.min():.1f} m short" if len(gap) and not speeds[-1] else "avoids it"
 
 
 class _Encounter:
@@ -133,7 +160,7 @@ class _Encounter:
     def __init__(self, road: "Road", drive: "Drive", world: "World", collision: Incident) -> None:
         assert drive.others is not None
         self.drive, self.at_time = drive, collision.at_time
-        number = [each.name for each in drive.others.actors].index(str(collision.other))
+        self.number = number = [each.name for each in drive.others.actors].index(str(collision.other))
         actor, states = drive.others.actors[number], drive.others.states[:, number]
         hit = min(int(self.at_time / STEP + 1e-9), len(states) - 1)
         hit -= int(np.isnan(states[hit, X]))  # it left at the step itself
@@ -179,6 +206,11 @@ class _Encounter:
         is_coming = np.arange(len(t)) >= (np.argmax(wanders) + steps if wanders.any() else np.inf)
         hard = np.append(0.0, np.diff(pace)) < -SUDDEN * STEP
         sudden = follows & (clearance < 0) & (np.convolve(hard, np.ones(steps))[: len(t)] > steps - 0.5)
+        self.stands, self.brakes_hard = (
+            bool(abs(other[hit - begin, SPEED]) < STILL),
+            bool(sudden[: len(seen)].any()),
+        )
+        self.cuts_in = bool(follows[start] and clearance[start] > 0 and follows[hit - begin])
         visible = np.concatenate([seen, np.ones(len(t) - len(seen), bool)])
 
         at = np.arange(since, self.at_time + AFTER, FINE)

@@ -135,21 +135,22 @@ def judge(
     beyond = most_beyond(road, drive, world)
     handed_to = drive.handed_to(step) if cause else None
     outcome: Outcome = "FAIL" if cause else "PASS"
-    avoided_by, avoided, excuse = None, "", ""
+    found, excuse = None, ""
     gap, ttc = _least(road, drive, world, incidents or ())
     is_yielding = handed_to and cause in GIVES_WAY  # what came of it may be a matter of the brakes
     hit = _contact_of(incidents or (), "collision", 0.0) if is_yielding or cause == "collision" else None
     if hit is not None:
         from roadgpt.verdict.avoidable import avoidance_of
 
-        avoided_by, is_own_doing, avoided = avoidance_of(road, drive, world, hit)
-        outcome = "FAIL" if avoided_by or is_own_doing or cause != "collision" else "UNAVOIDABLE"
-        if cause == "collision" and hit.contact is not None and is_own_doing:
+        found = avoidance_of(road, drive, world, hit)
+        is_avoidable = found.is_avoidable or found.is_own_doing
+        outcome = "FAIL" if is_avoidable or cause != "collision" else "UNAVOIDABLE"
+        if cause == "collision" and hit.contact is not None and found.is_own_doing:
             contact = replace(hit, contact=replace(hit.contact, at_fault=True))
             incidents = tuple(contact if each is hit else each for each in incidents or ())
     if handed_to and outcome == "FAIL":
         excuse = f"{handed_to} drove where the car failed, so the failure is not {drive.driver}'s"
-        if hit and avoided_by and _asks_for_emergency_braking(drive, hit):
+        if hit and found and found.is_avoidable and _asks_for_emergency_braking(drive, hit):
             excuse = f"{handed_to} drove there, but emergency braking stays {drive.driver}'s"
             handed_to = None
     if cause is None:
@@ -160,7 +161,7 @@ def judge(
     untold = [each for each in incidents or () if each is not contact or cause == "collision"]
     description += _counted(untold, cause) + _who_drove(drive.shares, excuse)
     s, x, y, time = (float(drive[name][step]) for name in ("s", "x", "y", "time"))
-    description += f"; {avoided}" * bool(avoided)
+    description += f"; {found.said}" if found else ""
     if cause == "collision" and contact is not None:
         s, (x, y), time = contact.at_s, contact.at_xy, contact.at_time
     if cause is None and drive.missed:
@@ -187,7 +188,8 @@ def judge(
         least_gap=gap,
         least_ttc=ttc,
         own_share=drive.shares.get(drive.driver),
-        avoided_by=avoided_by,
+        avoided_by=found and found.by,
+        criterion=found and found.criterion,
         handed_to=handed_to,
     )
 

@@ -157,6 +157,9 @@ class Verdict:
     avoided_by: tuple[str, ...] | None = None
     """Those of the four drivers of ``roadgpt.verdict.careful`` who avoid the collision that is the cause;
     None for other causes."""
+    criterion: str | None = None
+    """By whom this collision was to be avoided, or it is UNAVOIDABLE: "r157" (the careful driver), "reg157",
+    "rss", "fsm" or "any" of them; None for other causes."""
     handed_to: str | None = None
     """Who drove where the car failed, if the driver had handed over: such a failure is not one of the driver.
     None for other failures, and if the car did not fail.

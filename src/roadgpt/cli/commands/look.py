@@ -341,6 +341,7 @@ def scenarios(names: tuple[str, ...], as_json: bool) -> None:
         rows = [("", each.says)]
         if names:
             rows += [("source", each.source), ("scene", each.scene_text), ("road", each.plan)]
+            rows.append(("avoidable", f"by {each.avoidable}"))
             known = each.parameters
             rows += [(f"{name}={value}", known[name][1] or "a word") for name, value in each.values.items()]
             for block in each.grid:
