@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from roadgpt.brief.ranges import Range
 from roadgpt.errors import BriefError
 
-NUMBER = r"-?\d+(?:\.\d+)?"
+NUMBER = r"-?\d{1,15}(?:\.\d+)?"
 AMOUNT = re.compile(rf"({NUMBER})?(\.\.)?({NUMBER})?")
 
 
@@ -95,7 +95,9 @@ def read_amount(text: str) -> Amount:
     """Returns the amount that a plan gives. Raises BriefError for other texts and for reversed ranges."""
     match = AMOUNT.fullmatch(text)
     if not match or not (match[1] or match[3]) or (match[1] and match[3] and not match[2]):
-        raise BriefError(f"'{text[:40]}' is not a number in a plan; write 3, 3.., ..3 or 3..5")
+        raise BriefError(
+            f"'{text[:40]}' is not a number in a plan; write 3, 3.., ..3 or 3..5, with 15 digits at most"
+        )
     low, high = (float(bound) if bound else None for bound in (match[1], match[3]))
     try:
         return Amount(lo=low, hi=high if match[2] else low)

@@ -7,7 +7,7 @@ therefore removed from the words before a reader reads the words."""
 import re
 from itertools import pairwise
 
-from roadgpt.brief.languages import TABLE, pattern_of, word_set
+from roadgpt.brief.languages import TABLE, pattern_of, with_plain_numbers, word_set
 from roadgpt.brief.model import Brief
 from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, unaccented
 from roadgpt.errors import BriefError
@@ -46,6 +46,7 @@ def said_map_size(words: str) -> tuple[float, str] | None:
 
     "On a map of 500 m by 500 m" is removed; "a map of 500 m by 500 m with two crossroads" only loses the
     size. Raises BriefError if no map may have this size, or if the words say nothing else."""
+    words = with_plain_numbers(words)
     found = next(filter(None, (form.search(words) for form in MAP_SIZES)), None)
     if found is None:
         return None

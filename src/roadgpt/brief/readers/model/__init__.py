@@ -15,18 +15,28 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from roadgpt.brief.feasible import is_possible
+from roadgpt.brief.languages import TABLE, pattern_of
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import SCENE, plan
+from roadgpt.brief.ranges import Range
 from roadgpt.brief.readers.model.before import (
     COMPANIONS,
     asks_for_a_closed_loop,
     negative_number,
     other_script,
+    without_asides,
 )
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.number_words import COUNTED, plain
 from roadgpt.brief.readers.model.ring_sizes import with_diameters
-from roadgpt.brief.readers.model.scenes import asked_in, may_be_of_a_scene, with_named, with_origin, with_told
+from roadgpt.brief.readers.model.scenes import (
+    asked_in,
+    may_be_of_a_scene,
+    with_named,
+    with_origin,
+    with_told,
+    without_untold,
+)
 from roadgpt.brief.readers.model.slots import SlottedText, Word, slot_name, slotted
 from roadgpt.brief.readers.model.trained import (
     ANY_WORLD,
@@ -43,7 +53,7 @@ from roadgpt.brief.readers.model.trained import (
 )
 from roadgpt.brief.refusal import MOST_CHARACTERS, AnotherRoadError, TooMuchError, refused
 from roadgpt.brief.scene import Scene
-from roadgpt.brief.words import SURE
+from roadgpt.brief.words import SURE, unaccented
 from roadgpt.errors import BriefError, PartError
 from roadgpt.reading import read_json, read_text
 
@@ -64,6 +74,14 @@ BEFORE_NOUN = 3
 """The largest number of words between a number and the noun it counts: "40 very sharp turns"."""
 ROUTES = "_routes"
 """What follows 'encoder' and 'decoder' in the file names of the network that reads routes and maps."""
+CAUSES = {name: pattern_of(name, "causes") for name in TABLE["causes"]}
+ALLOWED = {
+    "grade": ("percent", Range(0, 15)),
+    "radius": ("metres", Range(15)),
+    "degrees": ("degrees", Range(0, 240)),
+    "length": ("metres", Range(0, 1500)),
+}
+"""The numbers of a unit of which none is the cause of a refusal."""
 TOO_MUCH = "no more than 12 turns and 1500 m are sure to fit on a map of 250 m; ask for less or a larger map"
 TOO_MANY_TURNS = "!impossible turns"
 MANY_JUNCTIONS = (
@@ -104,6 +122,7 @@ class ModelReader:
     def read(self, words: str) -> Brief:
         """Returns the Brief of a description; raises TooMuchError, with the Brief, if the road is too large
         for the usual map of 250 m, and BriefError if the description cannot be read."""
+        written, words = words, without_asides(words)
         text = _text(words)
         trained, found = chosen(self.roads, self.routes, words, text)
         if not found:
@@ -111,9 +130,9 @@ class ModelReader:
         draft = most_plausible(found)
         if draft.asks is not None and draft.asks.map is None and asks_for_a_closed_loop(words):
             raise refused("!impossible loop")
-        brief = self._brief(words, text, draft, trained)
+        brief = self._brief(words, text, draft, trained).model_copy(update={"words": written})
         is_sure = brief.confidence >= SURE
-        return brief if is_sure else brief.model_copy(update={"other": _other(found, brief, text)})
+        return brief if is_sure else brief.model_copy(update={"other": _other(found, brief, words, text)})
 
     def read_change(self, words: str, key: Callable[[str], str]) -> ChangeReading:
         """Returns what a change request asks for, as a plan; raises BriefError if the network wrote none that
@@ -141,7 +160,7 @@ class ModelReader:
     ) -> tuple[Brief, ...]:
         """Returns up to ``number`` different readings: first the likeliest, then sampled ones. For the
         arguments see ``brief.alternatives``."""
-        first = self.read(words)
+        first, words = self.read(words), without_asides(words)
         text = _text(words)
         trained, _ = chosen(self.roads, self.routes, words, text)
         across = trained.network.encode(text)
@@ -165,7 +184,7 @@ class ModelReader:
         brief = self._for_the_usual_map(words, text, trained) if why.startswith("!impossible") else None
         if brief is None and why == TOO_MANY_TURNS and trained is self.routes:
             raise BriefError(MANY_JUNCTIONS)
-        raise TooMuchError(TOO_MUCH, brief) if brief else refused(why)
+        raise TooMuchError(TOO_MUCH, brief) if brief else _refused(why, words, text)
 
     def _brief_in_spite_of(self, why: str, words: str, text: SlottedText, trained: Trained) -> Brief:
         """Returns the Brief of the likeliest plan that is no refusal, with a low confidence, if the plan
@@ -177,10 +196,10 @@ class ModelReader:
         found = trained.plans(text, NEVER)
         best = most_plausible(found) if found else None
         if best is None or best.asks is None or not is_possible(best.asks, *ANY_WORLD):
-            raise refused(why)
+            raise _refused(why, words, text)
         brief = _with_confidence(best.asks, words, text, best, trained)
         if trained.network.refusal(text) >= CERTAIN or lost(best.tokens, text):
-            raise AnotherRoadError(f"{refused(why)}; or is this meant", plan(brief), brief)
+            raise AnotherRoadError(f"{_refused(why, words, text)}; or is this meant", plan(brief), brief)
         return brief.model_copy(update={"confidence": min(brief.confidence, DOUBT)})
 
     def _for_the_usual_map(self, words: str, text: SlottedText, trained: Trained) -> Brief | None:
@@ -231,6 +250,20 @@ class ModelReader:
         return settings
 
 
+def _refused(why: str, words: str, text: SlottedText) -> BriefError:
+    """Returns the error for a refusal with those of its causes that the words, and their numbers, tell."""
+    said, is_impossible = unaccented(words), why.startswith("!impossible")
+
+    def is_told(cause: str) -> bool:
+        unit, allowed = ALLOWED.get(cause if is_impossible else "", ("", Range()))
+        values = [slot.value for slot in text.slots if slot.unit == unit]
+        is_beyond = not unit or not values or any(value not in allowed for value in values)
+        return cause not in CAUSES or (is_beyond and CAUSES[cause].search(said) is not None)
+
+    kind, *causes = why.split()
+    return refused(" ".join([kind, *filter(is_told, causes)]))
+
+
 def _with_confidence(
     asks: Brief,
     words: str,
@@ -251,18 +284,18 @@ def _with_confidence(
         "motorway": asks.motorway and asks.scene != Scene(),
         "beside": tuple(dict.fromkeys(kept)),  # the roads of a map may be closed loops
     }
-    made = with_diameters(asks, draft.tokens, text).model_copy(update=found)
+    made = without_untold(with_diameters(asks, draft.tokens, text).model_copy(update=found), words)
     return with_told(with_named(with_origin(made, text)), words)
 
 
-def _other(found: Sequence[ScoredPlan[Brief]], brief: Brief, text: SlottedText) -> str:
+def _other(found: Sequence[ScoredPlan[Brief]], brief: Brief, words: str, text: SlottedText) -> str:
     """Returns the likeliest plan that asks for something other than the Brief; empty if there is none."""
     free = {"words": "", "other": "", "unused": (), "confidence": 1.0, "beside": (), "motorway": False}
     said = brief.model_copy(update=free)
     for draft in found:
         if draft.asks is not None and is_possible(draft.asks, *ANY_WORLD):
             other = with_named(with_diameters(draft.asks, draft.tokens, text))
-            other = with_told(other, brief.words).model_copy(update=free)
+            other = without_untold(with_told(other, words), words).model_copy(update=free)
             if other != said:
                 return plan(other)
     return ""

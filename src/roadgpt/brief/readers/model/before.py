@@ -1,4 +1,5 @@
-"""One short check of the words before a network reads them: closed circuits, negative lengths, radii and
+"""What happens to the words before a network reads them. Asides that would be read as weather, light or land
+are taken out: colours, lamps, good sight, names and idioms. Closed circuits, negative lengths, radii and
 counts are refused; and the network for routes reads only texts with a word that may mention a junction, ramp,
 lane or map. A text with such a word may still describe a single road ("no junctions, please").
 
@@ -24,6 +25,16 @@ TELLING = [pattern_of(language, "routes", re.IGNORECASE) for language in TABLE["
 COMPANIONS = word_set("companions")
 MINUS, BEFORE_DASH, LENGTHS = word_set("minus"), word_set("before_dash"), word_set("lengths")
 NEAR = 4
+ASIDES, SIGHT = (
+    [(re.compile(aside), instead) for aside, instead in TABLE["asides"][rows]] for rows in ("rows", "sight")
+)
+
+
+def without_asides(words: str, asides: Sequence[tuple[re.Pattern[str], str]] = ASIDES) -> str:
+    """Returns the words without those that are no weather, light or land, such as "dark" in "dark green"."""
+    for aside, instead in asides:
+        words = aside.sub(instead, words)
+    return words
 
 
 def other_script(words: str) -> str:

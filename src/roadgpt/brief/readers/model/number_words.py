@@ -38,9 +38,6 @@ VAGUE_SETS = {
     for least, _, most in [ends.partition("-")]
 }
 ORDINALS = word_set("ordinals")
-FUNCTION_WORDS: dict[str, frozenset[str]] = {
-    code: frozenset(words.split()) for code, words in TABLE["function_words"].items()
-}
 LANGUAGES = ("en", "de", "fr", "es", "it")
 SMALL: Mapping[str, list[str]] = {code: words.split() for code, words in TABLE["small"].items()}
 TENS: Mapping[str, list[str]] = {code: words.split() for code, words in TABLE["tens"].items()}

@@ -7,17 +7,19 @@ from itertools import pairwise
 from typing import Any, get_args
 
 from roadgpt.brief.amount import exactly
+from roadgpt.brief.expressions import says_left_hand
 from roadgpt.brief.feasible import is_possible
 from roadgpt.brief.languages import TABLE, pattern_of, word_set
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import SCENE, read_plan
+from roadgpt.brief.readers.model.before import SIGHT, without_asides
 from roadgpt.brief.readers.model.clock import told_time
 from roadgpt.brief.readers.model.number_words import plain
 from roadgpt.brief.readers.model.slots import NumberSlot, SlottedText
 from roadgpt.brief.readers.model.vocabulary import WISHES, plan_of
 from roadgpt.brief.scene import STRUCTURES, Land, Scene
-from roadgpt.brief.words import Compass
+from roadgpt.brief.words import Compass, unaccented
 
 NAMES: Mapping[str, frozenset[str]] = {
     name: frozenset(words.split()) for name, words in TABLE["others"].items()
@@ -165,6 +167,27 @@ def with_told(brief: Brief, words: str) -> Brief:
     if fields.get("land") in ("rolling", "hilly") and brief.slope:
         changes["hills"] = None  # the land is hilly, and the road has a slope of its own
     return brief.model_copy(update=changes)
+
+
+TOLD = {name: pattern_of(name, "told", re.DOTALL) for name in TABLE["told"]}
+"""What the words must tell where a network says it: it was not trained to see that they do not."""
+
+
+def without_untold(brief: Brief, words: str) -> Brief:
+    """Returns a Brief without fog, a wet road, night, a low sun and traffic on the left if no word tells of
+    them. Names of towns tell of traffic on the left, unless other words are American."""
+    said, scene = unaccented(without_asides(words, SIGHT)), brief.scene
+    changes = dict[str, Any]()
+    if scene.fog and not TOLD["fog"].search(said):
+        changes["fog"] = None
+    if scene.surface == "wet" and not TOLD["wet"].search(said):
+        changes["surface"] = None
+    if scene.light and not TOLD[scene.light].search(said):
+        changes["light"] = None
+    is_abroad = TOLD["left_hand_towns"].search(said) and not TOLD["american"].search(said)
+    is_left = brief.left_hand and (is_abroad or TOLD["left_hand"].search(said) or says_left_hand(words))
+    left_hand = {"left_hand": bool(is_left), "scene": scene.model_copy(update=changes)}
+    return brief.model_copy(update=left_hand)
 
 
 def _each_once(lands: Iterable[Land]) -> tuple[Land, ...]:

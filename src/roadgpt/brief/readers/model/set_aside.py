@@ -3,8 +3,10 @@ documents. The network reads a word such as "year" in the place of each, so that
 
 from collections.abc import Sequence
 
-from roadgpt.brief.languages import word_set
+from roadgpt.brief.languages import pattern_of, word_set
 
+PERSON = pattern_of("person")
+"""The end of a word for a person, whose age follows in brackets."""
 AGES, MONTHS, ROUTES, DAY = (word_set(name) for name in ("ages", "months", "numbered_routes", "time_of_day"))
 YEARS = range(1950, 2036)
 ROUND_YEAR = 2000  # more often metres than a year
@@ -24,6 +26,9 @@ def stands_for(tokens: Sequence[str], first: int, last: int) -> str:
     if first != last or not said[0].isdecimal():
         return "age" if AGES.intersection(after[:1]) and _is_age(after) else ""
     if before[-1:] == ["aged"] or (AGES.intersection(after[:1]) and _is_age(after)):
+        return "age"
+    brackets = [*tokens[first - 1 : first], *tokens[last + 1 : last + 2]] if first > 1 else []
+    if brackets == ["(", ")"] and PERSON.search(tokens[first - 2]):
         return "age"
     if not MONTHS.isdisjoint([*before[-1:], *after[:1]]) or _is_of_date(tokens, first):
         return "date"

@@ -13,10 +13,9 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import radians, tan
 
-from roadgpt.brief.languages import TABLE, word_set
+from roadgpt.brief.languages import FUNCTION_WORDS, TABLE, language_of, with_plain_numbers, word_set
 from roadgpt.brief.readers.model.number_words import (
     COUNTED,
-    FUNCTION_WORDS,
     LEFT,
     LONGEST,
     ONE_TURN,
@@ -113,7 +112,7 @@ def take_unit(number: Number, tokens: list[str]) -> None:
         )
         if found and not (tokens[at + skip] in ("º", "a", "e") and number.value < 10) and not is_weight:
             unit, factor, size = found
-            number.value, number.unit = round(number.value * factor, 1), unit
+            number.value, number.unit = round(number.value * factor, 3 if factor == 1 else 1), unit
             number.spread *= factor
             number.last, number.is_bare, number.factor = at + skip + size - 1, False, factor
             return
@@ -465,7 +464,6 @@ ORDINAL_SIGN = re.compile(r"(?<=\d)(?:e|\.?ª)(?!\w)")
 """Letters that make an ordinal of the number before them: "4e" in French, "4ª" in Spanish and Italian."""
 BARE_POINT = re.compile(r"(?<![\w.])\.(?=\d)")
 MILLION = 1e6
-THOUSANDS = re.compile(r"[1-9]\d{0,2}[.,]\d{3}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -480,8 +478,8 @@ class Word:
 class NumberSlot:
     """A number that a slot stands for.
 
-    The value is in metres, degrees, percent, km/h or m/s2, rounded to one decimal; ``unit`` is empty if the
-    text gives no unit, and the value has two decimals then."""
+    The value is in metres, degrees, percent, km/h or m/s2, as it is told, or converted and rounded to one
+    decimal; ``unit`` is empty if the text gives no unit, and the value has two decimals then."""
 
     value: float
     unit: Unit
@@ -507,7 +505,7 @@ class SlottedText:
 
 def slotted(text: str, is_change: bool = False) -> SlottedText:
     """Returns the text with its numbers replaced by slots; a change request gets CHANGE as its first word."""
-    text = ORDINAL_SIGN.sub("eme", MIXED.sub(_sum, text))
+    text = ORDINAL_SIGN.sub("eme", MIXED.sub(_sum, with_plain_numbers(text)))
     said = tolerances_first(WORD.findall(BARE_POINT.sub("0.", text.translate(SYMBOLS))))
     tokens = _with_miles([plain(word) for word in said])
     numbers = _numbers(tokens)
@@ -534,14 +532,6 @@ def _sum(mixed: re.Match[str]) -> str:
 def slot_name(index: int) -> str:
     """Returns the token for the slot with this index (from 0): one of BERT's unused vocabulary entries."""
     return f"[unused{index + 1}]"
-
-
-def language_of(tokens: Sequence[str]) -> str:
-    """Returns the code, such as "de", of the language with the most function words in the text.
-
-    If several languages have the most, English ("en") is preferred, then the first in ``FUNCTION_WORDS``."""
-    found = set(tokens)
-    return max(FUNCTION_WORDS, key=lambda code: (len(found & FUNCTION_WORDS[code]), code == "en"))
 
 
 def _numbers(tokens: list[str]) -> list[Number]:
@@ -598,8 +588,6 @@ def _millions(tokens: list[str], at: int) -> Number | None:
 def _digit_value(token: str) -> float | None:
     if not token[0].isdecimal():
         return None
-    if THOUSANDS.fullmatch(token):
-        return float(re.sub(r"\D", "", token))
     parts = token.replace(",", ".").split(".")
     return float(".".join(parts[:2]))
 
@@ -731,7 +719,7 @@ def _measure(number: Number, spoken: str, slots: list[NumberSlot], is_change: bo
         return [Word("[unused20]", spoken)]
     out: list[Word] = []
     for end in ends:
-        value = round(number.value + end, 1 if number.unit else 2)
+        value = round(number.value + end, 2 if not number.unit else 3 if number.factor == 1 else 1)
         out += [Word("to", "")] if out else []
         out.append(Word(slot_name(len(slots)), spoken))
         slots.append(NumberSlot(value, number.unit))

@@ -186,7 +186,8 @@ def plan_of(tokens: Iterable[str], slots: Sequence[NumberSlot], is_change: bool 
             out[-1:] = ["x", figure({"x+": 1 + share, "x-": 1 - share, "x%": share}[percent], 4)]
         elif word in SLOT_TOKENS:
             has_unit = index < len(slots) and bool(slots[index].unit)
-            out.append(figure(value * SCALES.get(key, 1) if has_unit else value, 1 if has_unit else 2))
+            decimals = 2 if not has_unit else 1 if key in SCALES else 3
+            out.append(figure(value * SCALES.get(key, 1) if has_unit else value, decimals))
         elif word in RAINS:
             out.append(RAINS[word])
         elif word in (";", "|", ")", ","):
