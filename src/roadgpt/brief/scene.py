@@ -110,7 +110,7 @@ NUMBERS: Mapping[str, Number] = {
     "shift": Number("shift", 0.1, 10, "by {} metres"),
     "accel": Number("accel", -12, 12, "accelerating with {} m/s2"),
     "duration": Number("for", 0.1, 600, "for {} seconds"),
-    "gap": Number("gap", -200, 1000, "at a gap of {} metres", (*ALONG, "parked", "beside")),
+    "gap": Number("gap", -200, 1000, "at a gap of {} metres", (*ALONG, "parked", "beside", "crossing")),
     "headway": Number("thw", 0, 20, "at a headway of {} seconds", ("ahead", "behind")),
     "lead": Number("lead", -200, 1000, "with its middle {} metres ahead of the tested car's", ALONG),
     "station": Number("s", 0, 40_000, "at {} metres from the start"),
@@ -132,10 +132,11 @@ CUES = ("time", "distance", "ttc", "headway", "gap", "station", "at")
 """The conditions on which an action begins. Time and distance are those of the tested car since its start;
 the station is that of whoever acts, along the lane of the tested car."""
 ONE_OF = (
-    ("gap", "headway", "lead", "station", "at"),
+    ("gap", "headway", "lead", "station"),
+    ("headway", "lead", "station", "at"),
     ("speed", "faster"),
     ("overlap", "impact", "offset"),
-    CUES,
+    CUES,  # of actions only
 )
 
 
@@ -243,7 +244,8 @@ class Role(Frozen):
     """Where it is at first, seen from the tested car."""
     side: Side | Literal["opposite"] | None = None
     gap: Amount | None = None
-    """The distance along the lanes, bumper to bumper."""
+    """The distance along the lanes, bumper to bumper; before or after a part of the route, that from there to
+    its box, or to its path if it crosses."""
     headway: Amount | None = None
     lead: Amount | None = None
     """The distance along the lanes from the middle of the tested car to its middle."""
@@ -273,6 +275,8 @@ class Role(Frozen):
         for field in _given(self, one):
             if field in NUMBERS and self.where not in NUMBERS[field].where:
                 raise ValueError(f"who is {spot.said} has no {NUMBERS[field].key}=; leave it out")
+        if self.at and self.at.word == "in" and self.gap:
+            raise ValueError(f"'{self.at}' has no gap=; write before or after")
         if self.at and self.at.what:
             raise ValueError(
                 f"'{self.at}' is no place where {one} can be at first; write for example after turn 1"
@@ -485,7 +489,7 @@ def _given(thing: Frozen, name: str) -> list[str]:
             key, least, most, *_ = NUMBERS[field]
             if any(end is not None and not least <= end <= most for end in (amount.lo, amount.hi)):
                 raise ValueError(f"{key} of {name} is from {least:g} to {most:g}, not {amount}")
-    for fields in ONE_OF:
+    for fields in ONE_OF[:-1] if isinstance(thing, Role) else ONE_OF:
         both = [
             NUMBERS[each].key if each in NUMBERS else str(given[each]) for each in given if each in fields
         ]

@@ -50,6 +50,7 @@ TURNING = 20.0 / 3.6  # m/s, of vehicles that turn at a junction, at most
 CUT_IN = 10.0  # m, the gap at which one cuts in
 PASSED = 10.0  # m, the gap at which one has overtaken
 LANE = 3.5  # m from lane to lane
+APART = 0.05  # m, between who leaves a lane and who stands there
 CLEAR = 0.6  # share of a change of lanes after which one is clear of a car in the lane that is left
 HEADWAY = 2.0  # s, of who is ahead
 BEHIND = 1.5  # s, of who is behind, and of several alike one behind another
@@ -255,6 +256,8 @@ class Act:
         """Whether it stands until it has to go to be in time for its meeting."""
         self.matches = bool(self.meeting and v and not turns_off)
         """Whether it comes to its meeting when the tested car does."""
+        self.uncovers = False
+        """Whether it leaves its lane in time before those who stand there."""
         self.v = v
         self.put(self.s)
         self.ahead: tuple[float, float] | None = None
@@ -338,13 +341,14 @@ class Act:
         front, v, away = self.car.s + self.half, self.car.v, self.n.get("away")
         if self.crosses and "ttc" in self.cue and away is None:
             away = min(reach(self.cue["ttc"], 0.0, *self._starts(self.cue)), 60.0)
-        near = front + v * (ROLL + HEADWAY if self.crosses else LAST)
+        near = front + self.n.get("gap", v * (ROLL + HEADWAY if self.crosses else LAST))
         if self.role.at:
             first, last = stretch_of(self.role.at, self.road, self.path)
-            near = {"after": last, "in": first, "before": first - EASY * v}[self.role.at.word]
+            before, after = first - self.n.get("gap", EASY * v), last + self.n.get("gap", 0.0)
+            near = {"after": after, "in": first, "before": before}[self.role.at.word]
         near = self.n.get("station", near)
         way = way_of(self.role, self.path.to_road(max(near, 0.0)), self.road, self.world, away)
-        if self.crosses and way.meets and "station" not in self.n and not self.role.at:
+        if self.crosses and way.meets and not {"station", "gap"} & {*self.n} and not self.role.at:
             lasts = time_over(0.0, way.meets[0] + self.car.width / 2, *self._starts(self.cue))
             later = front + v * (1.0 + lasts)
             if later > near:
@@ -401,7 +405,7 @@ class Act:
             s = n["station"] if "station" in n else car.s + n["lead"]
         elif self.role.at:
             first, last = stretch_of(self.role.at, self.road, self.path)
-            half = length / 2 + 5.0
+            half = length / 2 + n.get("gap", 5.0)
             s = {"after": last + half, "in": (first + last) / 2, "before": first - half}[self.role.at.word]
         else:
             gap = self._said_gap(n)
@@ -509,6 +513,27 @@ class Act:
                 return t
             case _:  # cut_in, wrong_way, pull_out, overtake of who comes towards the tested car
                 return self._across()
+
+    def leave(self, begins: float, other: "Act") -> None:
+        """Makes sure that it has left its lane, from a station on and as fast as it is, before it is beside
+        somebody who stands there: sideways as fast as that needs, or else as the scene says. Raises
+        SceneError if that is too slow."""
+        deed, room = self.deeds[0], other.s - begins - (self.size.length + other.size.length) / 2
+        by = self._leads_to(deed, begins, self.t) - self.t
+        aside = (self.size.width + other.size.width) / 2 + APART + math.copysign(1, by) * (other.t - self.t)
+        share = math.acos(1.0 - 2.0 * min(max(aside / abs(by), 0.0), 1.0)) / math.pi
+        if not {"lateral", "duration"} & {*deed.n}:
+            needed = math.pi / 2 * abs(by) * share * self.v / max(room, 1.0)
+            deed.n["lateral"] = min(max(LATERAL[deed.what], needed), NUMBERS["lateral"].most)
+        lasts = _slides(deed, by)
+        needed = share * max(SHARPEST * math.pi / 2 * abs(by), self.v * lasts)
+        if needed > room:
+            raise SceneError(
+                f"the {self.kind} ahead begins to leave its lane {room:.0f} m before the "
+                f"{other.kind.replace('_', ' ')} that stands there, and needs {needed:.0f} m at "
+                f"{self.v * 3.6:.0f} km/h; give more distance, a greater 'lat', or less speed"
+            )
+        self.uncovers = True
 
     # how it moves
 

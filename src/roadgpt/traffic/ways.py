@@ -74,7 +74,7 @@ def _across(role: Role, near: float, road: "Road", world: "World", away: float |
     for who turns in."""
     s = near if role.where != "crosswalk" else _crosswalk(near, road, role.at is None)
     for passage in road.passages if role.where != "crosswalk" else ():
-        if passage.start - BEFORE < s < passage.end + BEHIND:
+        if passage.start - BEFORE < s < passage.end + BEHIND and role.gap is None:
             s = passage.end + BEHIND
     if near > road.length - GOAL:
         raise SceneError(f"the road ends at {road.length:.0f} m, before anybody can cross it; make it longer")

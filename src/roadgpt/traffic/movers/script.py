@@ -9,7 +9,7 @@ import numpy as np
 from roadgpt.brief.scene import DOINGS, LEAVES, MOST_MORE
 from roadgpt.road.road import START
 from roadgpt.traffic.acting import BEHIND, STANDS, Act, Car
-from roadgpt.traffic.actor import HEADING, SIZES, SPEED, Actor, FloatArray, TestedCar, corners
+from roadgpt.traffic.actor import HEADING, SIZES, SPEED, STILL, Actor, FloatArray, TestedCar, corners
 from roadgpt.traffic.places import parked_rows
 from roadgpt.traffic.traffic import NEVER, Stage
 from roadgpt.traffic.way import SPACING, Way
@@ -71,6 +71,12 @@ class Script:
                 elif last is not None and (act.copy or not act.is_placed):
                     act.put(max(act.s, last.s + (last.size.length + act.size.length) / 2 + STANDS))
                 last = act
+        for leaver in leavers:
+            begins = leaver.s + max(leaver.wait(leaver.deeds[0]), 0.0) * leaver.v
+            for act in ahead:
+                wide = (act.size.width + leaver.size.width) / 2
+                if act.v == 0 and begins < act.s and abs(act.t - leaver.t) < wide:
+                    leaver.leave(begins, act)
         for act in ahead if last is not None else ():
             assert last is not None
             if act.v > 0 and act.first not in LEAVES and not act.is_placed and act.s < last.s:
@@ -131,6 +137,9 @@ class Script:
             gap = apart - half - act.size.length / 2
             sides = [act.t] if act.slide is None else [act.t, act.slide.begin + act.slide.by]
             near = np.min([np.abs(left - each) for each in sides], axis=0)
+            if act.uncovers and (not act.begun or act.slide):
+                to = np.abs(left - sides[-1]) if act.slide else np.inf
+                near = np.where(np.abs(speed) < STILL, to, near)
             is_ahead = (
                 is_on & (apart > SPACING) & (gap < IN_SIGHT) & (near < wide + act.size.width / 2 + BESIDE)
             )
