@@ -17,7 +17,7 @@ from typing import Any, Literal, NamedTuple
 
 from roadgpt.brief.model import mirrored_scene
 from roadgpt.brief.plan import read_scene
-from roadgpt.brief.scene import NUMBERS, Scene
+from roadgpt.brief.scene import NUMBERS, SIZES, Scene
 from roadgpt.errors import BriefError, UsageError
 from roadgpt.reading import read_text
 
@@ -30,6 +30,7 @@ OPERATORS: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
 }  # fmt: skip
 FUNCTIONS: Mapping[str, Callable[..., Any]] = {
     "abs": abs,
+    "length": lambda kind: SIZES[kind].length,
     "max": max,
     "sign": lambda side: 1 if side == "left" else -1,
     "side": lambda offset: "left" if offset > 0 else "right",

@@ -67,6 +67,34 @@ def one_of(kind: ActorKind) -> str:
     return article + kind.replace("_", " ")
 
 
+class Size(NamedTuple):
+    """The box of an actor in metres."""
+
+    length: float
+    width: float
+    height: float
+
+
+SIZES: Mapping[ActorKind, Size] = {
+    "car": Size(4.7, 1.8, 1.5),
+    "van": Size(6.5, 2.16, 2.86),
+    "truck": Size(12.0, 2.5, 3.6),
+    "bus": Size(12.0, 2.5, 3.4),
+    "motorcycle": Size(2.2, 0.9, 1.5),
+    "bicycle": Size(1.9, 0.65, 1.86),
+    "adult": Size(0.6, 0.5, 1.8),
+    "child": Size(0.5, 0.4, 1.15),
+    "animal": Size(1.5, 0.5, 1.2),
+    "cones": Size(0.4, 0.4, 0.75),
+    "barrier": Size(0.5, 2.0, 1.0),
+    "lost_load": Size(0.8, 0.6, 0.4),
+}
+"""Van, bus and motorcycle: SUMO, vehicle type parameter defaults (delivery, bus, motorcycle). Truck: the
+longest single vehicle of Directive 96/53/EC, Annex I; car: between the 4.3 and 5.0 m of the vehicles in UN
+R157's simulations. Bicycle, adult, child: Euro NCAP's targets EBT, EPTa and EPTc. The animal is a roe deer.
+"""
+
+
 class Spot(NamedTuple):
     """Where somebody can be at first."""
 
@@ -244,8 +272,8 @@ class Role(Frozen):
     """Where it is at first, seen from the tested car."""
     side: Side | Literal["opposite"] | None = None
     gap: Amount | None = None
-    """The distance along the lanes, bumper to bumper; before or after a part of the route, that from there to
-    its box, or to its path if it crosses."""
+    """The distance along the lanes, bumper to bumper; of who is beside a part of the route, or crosses there,
+    that from its end to the box, or to the path across."""
     headway: Amount | None = None
     lead: Amount | None = None
     """The distance along the lanes from the middle of the tested car to its middle."""
@@ -275,8 +303,10 @@ class Role(Frozen):
         for field in _given(self, one):
             if field in NUMBERS and self.where not in NUMBERS[field].where:
                 raise ValueError(f"who is {spot.said} has no {NUMBERS[field].key}=; leave it out")
-        if self.at and self.at.word == "in" and self.gap:
-            raise ValueError(f"'{self.at}' has no gap=; write before or after")
+        if self.gap and self.at and (self.where not in ("crossing", "beside") or self.at.word == "in"):
+            raise ValueError(f"{one} has 'gap' and '{self.at}'; give one of them")
+        if self.gap and self.where == "crossing" and not self.at:
+            raise ValueError("who is crossing has no gap= but to a place; write before or after junction 1")
         if self.at and self.at.what:
             raise ValueError(
                 f"'{self.at}' is no place where {one} can be at first; write for example after turn 1"

@@ -341,14 +341,14 @@ class Act:
         front, v, away = self.car.s + self.half, self.car.v, self.n.get("away")
         if self.crosses and "ttc" in self.cue and away is None:
             away = min(reach(self.cue["ttc"], 0.0, *self._starts(self.cue)), 60.0)
-        near = front + self.n.get("gap", v * (ROLL + HEADWAY if self.crosses else LAST))
+        near = front + v * (ROLL + HEADWAY if self.crosses else LAST)
         if self.role.at:
             first, last = stretch_of(self.role.at, self.road, self.path)
             before, after = first - self.n.get("gap", EASY * v), last + self.n.get("gap", 0.0)
             near = {"after": after, "in": first, "before": before}[self.role.at.word]
         near = self.n.get("station", near)
         way = way_of(self.role, self.path.to_road(max(near, 0.0)), self.road, self.world, away)
-        if self.crosses and way.meets and not {"station", "gap"} & {*self.n} and not self.role.at:
+        if self.crosses and way.meets and "station" not in self.n and not self.role.at:
             lasts = time_over(0.0, way.meets[0] + self.car.width / 2, *self._starts(self.cue))
             later = front + v * (1.0 + lasts)
             if later > near:

@@ -2,14 +2,15 @@
 the tested car."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from roadgpt.brief.scene import ActorKind
+from roadgpt.brief.scene import SIZES as SIZES
+from roadgpt.brief.scene import ActorKind, Size
 
 if TYPE_CHECKING:
     from roadgpt.scene import Body
@@ -23,34 +24,6 @@ X, Y, Z, HEADING, SPEED = range(5)
 its speed along its heading in m/s, negative when it reverses."""
 
 PER_UNIT = np.array([1e3, 1e3, 1e3, 1e4, 1e3])  # to these numbers in a m, m, m, rad, m/s states are rounded
-
-
-class Size(NamedTuple):
-    """The box of an actor in metres."""
-
-    length: float
-    width: float
-    height: float
-
-
-SIZES: Mapping[ActorKind, Size] = {
-    "car": Size(4.7, 1.8, 1.5),
-    "van": Size(6.5, 2.16, 2.86),
-    "truck": Size(12.0, 2.5, 3.6),
-    "bus": Size(12.0, 2.5, 3.4),
-    "motorcycle": Size(2.2, 0.9, 1.5),
-    "bicycle": Size(1.9, 0.65, 1.86),
-    "adult": Size(0.6, 0.5, 1.8),
-    "child": Size(0.5, 0.4, 1.15),
-    "animal": Size(1.5, 0.5, 1.2),
-    "cones": Size(0.4, 0.4, 0.75),
-    "barrier": Size(0.5, 2.0, 1.0),
-    "lost_load": Size(0.8, 0.6, 0.4),
-}
-"""Van, bus and motorcycle: SUMO, vehicle type parameter defaults (delivery, bus, motorcycle). Truck: the
-longest single vehicle of Directive 96/53/EC, Annex I; car: between the 4.3 and 5.0 m of the vehicles in UN
-R157's simulations. Bicycle, adult, child: Euro NCAP's targets EBT, EPTa and EPTc. The animal is a roe deer.
-"""
 
 
 class TestedCar(NamedTuple):
