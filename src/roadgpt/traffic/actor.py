@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from roadgpt.brief.scene import SIZES as SIZES
-from roadgpt.brief.scene import ActorKind, Size
+from roadgpt.brief.scene import ActorKind
+from roadgpt.brief.scene import Size as Size
 
 if TYPE_CHECKING:
     from roadgpt.scene import Body
