@@ -381,3 +381,105 @@ def test_the_criterion_is_that_of_un_r157_for_its_kinds_and_any_for_all_others(
         is_avoidable = not {*whom}.isdisjoint(found.avoided_by or ())
         assert (found.outcome == "FAIL") == (is_avoidable or "avoidable: it" in found.description)
         assert all(f"{each} " in found.description.partition("avoidable by")[2] for each in NAMES)
+
+
+def stops(speed: float, name: str, given: Any) -> float:
+    """The way to a stop of one of the four, step by step, where ``given(way, speed)`` m/s2 are the most."""
+    delay, released, jerk, most = {
+        "careful driver": (0.75, 0.4, 12.65, 0.774 * G), "Reg157": (0.35, 0.0, np.inf, 6.0),
+        "FSM": (0.75, 0.0, 12.65, 0.774 * G), "RSS": (0.75, 0.0, 12.65, 0.774 * G),
+    }[name]  # fmt: skip
+    way, time, step = 0.0, 0.0, 1e-3
+    while speed > 0 and way < 400:
+        rate = released if time < delay else min(released + jerk * (time - delay), most)
+        speed -= min(rate, given(way, speed)) * step
+        way += max(speed, 0.0) * step
+        time += step
+    return way
+
+
+def climb(grade: float) -> Road:
+    return Road.through([[x, 0, 100 + grade * x] for x in range(0, 601, 20)])
+
+
+@pytest.mark.parametrize(
+    ("of", "road", "given"),
+    [
+        ({"friction": 0.1}, ROAD, lambda way, v: 0.1 * G),
+        ({"friction": 0.35}, ROAD, lambda way, v: 0.35 * G),
+        ({"friction": 0.6}, climb(-0.12), lambda way, v: (0.6 - 0.12) * G / np.hypot(1, 0.12)),
+        ({"friction": 0.6}, climb(0.12), lambda way, v: (0.6 + 0.12) * G / np.hypot(1, 0.12)),
+        ({"friction": 0.1}, climb(-0.12), lambda way, v: -0.02 * G / np.hypot(1, 0.12)),
+        (
+            {"scene": "slippery mu=0.1 s=85 len=30"},
+            ROAD,
+            lambda way, v: G * (0.1 if 85 < 75 - BOX.length / 2 + way < 115 else 1),
+        ),
+    ],
+)
+def test_nobody_brakes_harder_than_friction_and_grade_allow(of: Any, road: Road, given: Any) -> None:
+    """He stands in the lane, is not there before, and beyond it no model can stop."""
+    speed = 60 / 3.6
+    needed = {name: stops(speed, name, given) for name in NAMES}
+    for away in {round(way + by, 1) for way in needed.values() for by in (-1.0, 1.0) if way < 250} or {250.0}:
+        begins = 75 - speed * 3 - BOX.length / 2  # its front is at 75 m when he is there, at 3 s
+        child = straight(75 + away + 0.25, LANE, 0.0, 0.0)
+        made = among(
+            driven(straight(begins, LANE, 0, speed), 5 + away / speed, road),
+            tracks(5 + away / speed, c_1=("child", child)),
+        )
+        assert made.others is not None
+        states = made.others.states.copy()
+        states[..., 2] = road.at(75 + away)[2]
+        made = replace(made, columns=Columns({**made.columns, "z": road.at(made["x"])[:, 2] + BOX.height}))
+        states[:30] = np.nan
+        found = verdict(
+            among(made, Tracks(made.others.actors, states)), world().changed(speed_limit=60.0, **of), road
+        )
+        assert found.avoided_by == tuple(name for name, way in needed.items() if way < away), away
+
+
+def test_a_bend_takes_its_part_of_the_friction_circle() -> None:
+    """On a radius of 60 m at 50 km/h 3.2 of 3.5 m/s2 go sideways at first, so that 1.3 are left to brake."""
+    road = Road.through([[60 * np.sin(a), 60 - 60 * np.cos(a)] for a in np.arange(0, 3.1, 0.1)])
+    speed, radius = 50 / 3.6, 60 - LANE
+
+    def along(x: float, v: float) -> Any:
+        def motion(time: Any) -> Any:
+            a = (x + v * np.asarray(time)) / radius
+            return radius * np.sin(a), 60 - radius * np.cos(a), a
+
+        return motion
+
+    def given(way: float, v: float, bend: float) -> float:
+        return float(np.sqrt(max((0.36 * G) ** 2 - (v * v * bend) ** 2, 0)))
+
+    bent = stops(speed, "careful driver", lambda way, v: given(way, v, 1 / 60))
+    plain = stops(speed, "careful driver", lambda way, v: given(way, v, 0))
+    assert bent > plain + 4
+    for away in (plain + 1, bent - 1, bent + 1):
+        begins = 20.0
+        front = begins + speed * 2 + BOX.length / 2
+        made = among(
+            driven(along(begins, speed), 3 + away / speed, road),
+            tracks(3 + away / speed, c_1=("child", along(front + away + 0.25, 0.0))),
+        )
+        assert made.others is not None
+        states = made.others.states.copy()
+        states[:20] = np.nan
+        found = verdict(among(made, Tracks(made.others.actors, states)), world().changed(friction=0.36), road)
+        assert ("careful driver" in (found.avoided_by or ())) == (away > bent), away
+
+
+@pytest.mark.parametrize(("scene_text", "is_doing"), [("", True), ("car ahead gap=15 v=50", False)])
+def test_a_gap_that_the_scene_itself_sets_is_not_the_cars_doing(scene_text: str, is_doing: bool) -> None:
+    """It follows 15 m behind who then brakes; the regulation has 20.8 m at 50 km/h."""
+    v = 50 / 3.6
+    drive = scene(straight(10, LANE, 0, v), 10, car_1=("car", lead(10 + 15 + 4.5, v, 6.0, 4.0)))
+    assert ("m of UN R157" in verdict(drive, world(scene_text)).description) == is_doing
+    # but it is, if it came nearer by itself
+    nearer = lambda time: (10 + v * time + np.clip(time - 1, 0, 3) * 1.5, LANE, 0)  # noqa: E731
+    drive = scene(nearer, 12, car_1=("car", lead(10 + 19 + 4.5, v, 6.0, 7.0)))
+    told = verdict(drive, world(scene_text)).description
+    kept, least = told.partition("it kept ")[2].partition(" m of UN")[0].split(" m, not the ")
+    assert float(kept) < float(least)

@@ -10,9 +10,12 @@ moves as recorded; from the end of the recording, or from a contact that makes i
 - For everybody else the definition is ours: danger begins when the path that it takes with its present
   velocity leads into the car's strip before the car has passed.
 
+No driver brakes harder than the friction circle and the grade allow at its place, beside what a bend takes.
+
 ``docs/explanation/traffic.md`` has all definitions.
 """
 
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -25,12 +28,22 @@ from roadgpt.drive.company import EYE, SPACING, in_sight
 from roadgpt.network import legs_of, network_of
 from roadgpt.network.landscape import horizon_around
 from roadgpt.network.lanes import lanes_of
+from roadgpt.road.speed_profile import GRAVITY
 from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y
 from roadgpt.traffic.following import AFTER_CONTACT
-from roadgpt.verdict.careful import CAREFUL, DRIVERS, Driver, Moment, drive_on, stopping_distance
+from roadgpt.verdict.careful import (
+    CAREFUL,
+    DRIVERS,
+    FULL,
+    LEAST_GRIP,
+    Driver,
+    Moment,
+    drive_on,
+    stopping_distance,
+)
 from roadgpt.verdict.contact import CORNER, middles, separation
 from roadgpt.verdict.incidents import OVER_BY, limits_at
-from roadgpt.verdict.measures import ACROSS, ALONG, Line, driven_lane, measure
+from roadgpt.verdict.measures import ACROSS, ALONG, Line, Measures, driven_lane, measure
 from roadgpt.verdict.verdict import PARTLY, Incident, percent
 
 if TYPE_CHECKING:
@@ -47,7 +60,7 @@ BEHIND, OBJECT = 2.0, 0.6  # m: the eye behind the car's front; the height of an
 AHEAD = 300.0  # m of lane after the contact
 WANDERS, EVALUATED, SUDDEN = 0.375, 0.4, 5.0  # m, s, m/s^2
 TOWARDS = 0.05  # m/s sideways; tracks are rounded to a millimetre
-KEPT = 2.0  # s
+KEPT, NEARER = 2.0, 0.1  # s; m, by which a gap is smaller that the tested car is told to have kept
 COMFORT, OVER, RECENT, SIDEWAYS = 3.5, 0.5, 3.0, 2.0
 """ISO 15622: m/s^2, the hardest braking of cruise control; ours: the seconds over which it is measured, the
 seconds before the contact in which it counts, and the m/s^2 sideways above which a bend calls for it."""
@@ -88,32 +101,43 @@ def avoidance_of(road: "Road", drive: "Drive", world: "World", collision: Incide
     meeting = _Encounter(road, drive, world, collision)
     courses = {driver: _course(driver, meeting) for driver in DRIVERS}
     by = tuple(driver.said for driver, (hits, _) in courses.items() if not hits)
-    criterion = world.limits.avoidable or ("r157" if _is_of_r157(road, drive, world, meeting) else "any")
+    measured = measure(road, drive, world)
+    criterion = world.limits.avoidable or ("r157" if _is_of_r157(measured, meeting) else "any")
     whose, whom = CRITERIA[criterion]
     is_avoidable = any(driver.said in by for driver in whom)
     each = ", ".join(f"{driver.said} {how}" for driver, (_, how) in courses.items())
     said = f"{'' if is_avoidable else 'not '}avoidable by {whose}: {each}"
-    own = meeting.own_doing() or _braked_for_nothing(road, drive, world, collision)
+    own = meeting.own_doing(
+        _given_gap(measured, meeting) if world.scene.actors else np.inf
+    ) or _braked_for_nothing(road, drive, world, measured, collision)
     said = f"avoidable: it {own}; {said}" if own else said
     return Avoidance(by, criterion, is_avoidable, bool(own), said)
 
 
-def _is_of_r157(road: "Road", drive: "Drive", world: "World", meeting: "_Encounter") -> bool:
+def _given_gap(measured: Measures, meeting: "_Encounter") -> float:
+    """Returns the gap in metres with which the scene placed the other ahead in the lane, or it came there."""
+    gap = measured.gap[measured.time <= meeting.at_time, meeting.number]
+    before = np.flatnonzero(np.isinf(gap[:-1]))
+    return float(gap[before[-1] + 1 if len(before) else 0])
+
+
+def _is_of_r157(measured: Measures, meeting: "_Encounter") -> bool:
     """Whether somebody cut in or braked hard ahead, as UN R157 defines it, or stands where a vehicle that was
     ahead of the tested car left its lane."""
     if meeting.cuts_in or meeting.brakes_hard:
         return True
-    measured = measure(road, drive, world)
     gap = measured.gap[measured.time <= meeting.at_time]
     is_between = np.isfinite(gap) & (gap < gap[:, [meeting.number]])
     has_left = np.isinf(gap[-1]) & (measured.distance[len(gap) - 1] > 0)
     return meeting.stands and bool((is_between.any(axis=0) & has_left).any())
 
 
-def _braked_for_nothing(road: "Road", drive: "Drive", world: "World", collision: Incident) -> str:
+def _braked_for_nothing(
+    road: "Road", drive: "Drive", world: "World", measured: Measures, collision: Incident
+) -> str:
     """Returns how hard the tested car braked before it was hit from behind, in words; empty if it did not, if
     it would have been hit anyway, or if something within its way to a stop may have called for it."""
-    measured, hit, end = measure(road, drive, world), collision.contact, collision.at_time
+    hit, end = collision.contact, collision.at_time
     assert drive.others is not None
     assert hit is not None
     time = measured.time
@@ -226,9 +250,24 @@ class _Encounter:
         self._length = drive.car.length + length
 
         then = np.minimum(at, self.at_time)
+        # What the road gives, along the way: beyond the driven part, stations go on with it.
+        driven = np.interp(self.when, drive["time"], drive["s"])
+        grid = np.arange(0.0, way.run[-1] + ALONG, ALONG)
+        s = np.interp(grid, self.run, driven) + np.maximum(grid - self.run[-1], 0.0)
+        s = np.clip(s, 0.0, road.length)
+        slope = np.arctan(road.grade(s))
+        circle = GRAVITY * np.cos(slope) * [world.friction_at(each) for each in s]
+        falls = GRAVITY * np.sin(slope)
+        self._grip = [
+            *zip((circle**2).tolist(), (road.curvature(s) ** 2).tolist(), falls.tolist(), strict=True)
+        ]
+
+        eye = self._eye(since)
+        sight = _sight(way, eye, visual_range(scene, "lane")) - BEHIND
+        in_sight = (grid >= eye) & (grid <= eye + max(sight, ALONG))
+        grip = float(np.clip(circle + falls, LEAST_GRIP, FULL)[in_sight].mean()) if in_sight.any() else FULL
         speeds = np.arange(0.0, 80.0, 0.1)
-        ways = [stopping_distance(speed) for speed in speeds]
-        sight = _sight(way, self._eye(since), visual_range(scene, "lane")) - BEHIND
+        ways = [stopping_distance(speed, grip) for speed in speeds]
         self.recorded = np.interp(then, drive["time"], np.abs(drive["speed"]))
         limit = np.interp(then, drive["time"], limits_at(road, world, drive["s"]))
         self.free = np.minimum(self.recorded, np.minimum(limit, np.interp(sight, ways, speeds))).tolist()
@@ -255,18 +294,31 @@ class _Encounter:
     def seen(self, at: int, place: float, speed: float, gained: float) -> Moment:
         """Returns what a driver sees at a step, given its place, speed and acceleration."""
         along, stretch, clearance, pace, towards, follows, visible, perceived, sudden = self._rows[at]
+        circle, bend, falls = self._grip[min(max(int(place / ALONG), 0), len(self._grip) - 1)]
+        grip = math.sqrt(max(circle - speed**4 * bend, 0.0)) + falls
         if not visible:
-            return Moment(np.inf, np.inf, self._length, speed, gained, pace, 0.0, is_perceived=False)
+            return Moment(np.inf, np.inf, self._length, speed, gained, pace, 0.0, False, grip=grip)
         gap, meets = along - stretch - place - self.half[0], False
         if not follows and (clearance < 0 or towards > 0):
             enters = max(clearance, 0.0) / towards if clearance > 0 else 0.0
             meets = along + stretch + pace * enters > place + speed * enters - self.half[0]
         return Moment(
-            gap, clearance, self._length, speed, gained, pace, towards, perceived and follows, sudden, meets
+            gap,
+            clearance,
+            self._length,
+            speed,
+            gained,
+            pace,
+            towards,
+            perceived and follows,
+            sudden,
+            meets,
+            grip,
         )
 
-    def own_doing(self) -> str:
-        """Returns how the tested car brought the collision about, in words; empty if it did not."""
+    def own_doing(self, given: float) -> str:
+        """Returns how the tested car brought the collision about, in words; empty if it did not. The gap that
+        was ``given`` to it is not its doing."""
         outside = float(np.interp(self.at_time, self.drive["time"], self.drive["outside"]))
         if outside > PARTLY:
             return f"was outside its lane with {percent(outside)} of it"
@@ -277,10 +329,15 @@ class _Encounter:
                 break
             least = max(moment.speed * np.interp(moment.speed, *FRONTS), 2.0)
             closes = moment.speed > moment.its_speed - 0.1
-            is_near = self._rows[at][5] and moment.clearance < 0 and 0 < moment.gap < least and closes
+            is_near = (
+                self._rows[at][5]
+                and moment.clearance < 0
+                and 0 < moment.gap < min(least, given) - NEARER
+                and closes
+            )
             kept = kept + 1 if is_near else 0
             if kept * STEP >= KEPT:
-                return f"kept {moment.gap:.0f} m, not the {least:.0f} m of UN R157"
+                return f"kept {moment.gap:.1f} m, not the {least:.1f} m of UN R157"
         return ""
 
 

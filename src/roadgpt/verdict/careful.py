@@ -11,7 +11,8 @@
 
 Parameters are those with which Mattas et al. (2022), "Driver models for the definition of safety requirements
 of automated vehicles in international regulations", compared the four. A driver is asked step after step.
-Its delay runs only while it sees a danger; once a danger is over, it keeps the speed that it has then.
+Its delay runs only while it sees a danger; once a danger is over, it keeps the speed that it has then. None
+brakes harder, or counts on more, than the road lets it: ``Moment.grip``, and no parameter says otherwise.
 """
 
 import math
@@ -24,6 +25,7 @@ CRITICAL = 2.0  # s, of the time to collision
 REACTS, SYSTEM, BESIDE = 0.35, 6.0, 0.5  # Reg157: s, m/s^2, m
 GAINS, SIDEWAYS, WAVERS = 3.0, 1.0, 0.3  # RSS: m/s^2 within its delay, m/s^2 sideways, m
 GENTLY, HARD, LEADER, MARGIN = 4.0, 6.0, 7.0, 2.0  # FSM: m/s^2, of the leader, m
+LEAST_GRIP = 0.1  # m/s^2, that a driver counts on where there is less; ours
 SPARE = 0.1  # s, which Reg157 brakes earlier, and FSM wants between its passing and the other's coming
 
 
@@ -49,6 +51,13 @@ class Moment(NamedTuple):
     """Whether it has taken note that the other, in its lane, brakes harder than R157's threshold."""
     is_crossing: bool = False
     """Whether the path of somebody who does not follow the lane leads into its strip: all four brake."""
+    grip: float = math.inf
+    """The deceleration in m/s^2 that the friction circle and the grade leave it at its place and speed; below
+    0 it gains speed downhill however it brakes."""
+
+    def least(self, acceleration: float) -> float:
+        """Returns an acceleration that a driver counts on, in m/s^2, or what there is of it."""
+        return max(min(acceleration, self.grip), LEAST_GRIP)
 
 
 class Driver(NamedTuple):
@@ -70,13 +79,15 @@ def _is_close(moment: Moment, time: float) -> bool:
 
 
 def _careful(moment: Moment) -> float:
-    fears = math.inf if moment.acceleration < -FULL / 2 else CRITICAL  # it brakes until nothing closes
+    fears = (
+        math.inf if moment.acceleration < -moment.least(FULL) / 2 else CRITICAL
+    )  # it brakes until nothing closes
     is_close = moment.is_perceived and _is_close(moment, fears)
     return FULL if is_close or moment.is_sudden or moment.is_crossing else 0.0
 
 
 def _reg157(moment: Moment) -> float:
-    least = (moment.speed - moment.its_speed) / (2 * SYSTEM) + REACTS + SPARE
+    least = (moment.speed - moment.its_speed) / (2 * moment.least(SYSTEM)) + REACTS + SPARE
     is_close = moment.clearance <= BESIDE and _is_close(moment, least)
     return SYSTEM if is_close or moment.is_sudden or moment.is_crossing else 0.0
 
@@ -84,10 +95,11 @@ def _reg157(moment: Moment) -> float:
 def _rss(moment: Moment) -> float:
     if moment.is_crossing:
         return FULL
-    later, lateral = moment.speed + DELAY * GAINS, max(moment.lateral, 0.0)
-    along = (moment.speed + later) / 2 * DELAY + (later**2 - moment.its_speed**2) / (2 * SYSTEM)
-    aside = lateral + SIDEWAYS * DELAY
-    across = WAVERS + (lateral + aside) / 2 * DELAY + aside**2 / (2 * SIDEWAYS)
+    later, lateral = moment.speed + DELAY * moment.least(GAINS), max(moment.lateral, 0.0)
+    along = (moment.speed + later) / 2 * DELAY + (later**2 - moment.its_speed**2) / (2 * moment.least(SYSTEM))
+    sideways = moment.least(SIDEWAYS)
+    aside = lateral + sideways * DELAY
+    across = WAVERS + (lateral + aside) / 2 * DELAY + aside**2 / (2 * sideways)
     is_near = -moment.length / 2 <= moment.gap < along and moment.clearance < across
     return FULL if is_near else 0.0
 
@@ -96,6 +108,7 @@ def _fsm(moment: Moment) -> float:
     if moment.is_crossing:
         return FULL
     gap, closing = moment.gap, moment.speed - moment.its_speed
+    gently, hard, leader = (moment.least(each) for each in (GENTLY, HARD, LEADER))
     if gap < -moment.length / 2:
         return 0.0
     if moment.clearance > 0:
@@ -104,17 +117,17 @@ def _fsm(moment: Moment) -> float:
         if moment.clearance / moment.lateral > (gap + moment.length) / closing + SPARE:
             return 0.0
     critical = 0.0
-    gained = max(moment.acceleration, -GENTLY) * DELAY
+    gained = max(moment.acceleration, -gently) * DELAY
     if closing > 0 and closing + gained < 0:
         critical = float(gap < closing**2 / abs(2 * moment.acceleration))
     elif closing > 0:
         way, rest = (closing + gained / 2) * DELAY, (closing + gained) ** 2 / 2
-        critical = _share(gap, way + rest / HARD, way + rest / GENTLY)
+        critical = _share(gap, way + rest / hard, way + rest / gently)
     if critical:
-        return GENTLY + critical * (HARD - GENTLY)
-    way = moment.speed * DELAY - moment.its_speed**2 / (2 * LEADER)
-    unsafe, safe = way + moment.speed**2 / (2 * HARD), way + moment.speed**2 / (2 * GENTLY) + MARGIN
-    return GENTLY * _share(gap - MARGIN, unsafe, safe)
+        return gently + critical * (hard - gently)
+    way = moment.speed * DELAY - moment.its_speed**2 / (2 * leader)
+    unsafe, safe = way + moment.speed**2 / (2 * hard), way + moment.speed**2 / (2 * gently) + MARGIN
+    return gently * _share(gap - MARGIN, unsafe, safe)
 
 
 def _share(gap: float, unsafe: float, safe: float) -> float:
@@ -145,7 +158,8 @@ def drive_on(
     places, speeds, gained, delay = [first], [free[0]], 0.0, math.ceil(driver.delay / step - 1e-9)
     waited, deceleration, is_alarmed = 0, 0.0, False
     for at in range(len(free) - 1):
-        wanted = driver.braking(seen(at, places[-1], speeds[-1], gained))
+        moment = seen(at, places[-1], speeds[-1], gained)
+        wanted = driver.braking(moment)
         speed = speeds[-1] if is_alarmed else free[at + 1]
         if wanted > 0:
             is_alarmed = True
@@ -153,18 +167,19 @@ def drive_on(
                 waited, deceleration = waited + 1, driver.released
             else:
                 deceleration = min(deceleration + driver.jerk * step, wanted)
-            speed = max(speeds[-1] - deceleration * step, 0.0)
+            speed = max(speeds[-1] - min(deceleration, moment.grip) * step, 0.0)
         gained = (speed - speeds[-1]) / step
         speeds.append(speed)
         places.append(places[-1] + speed * step)
     return places, speeds
 
 
-def stopping_distance(speed: float) -> float:
-    """Returns the way in metres that the careful driver needs to stop, from a danger on and from 3 m/s
-    on."""
-    rises = (FULL - RELEASED) / JERK
-    braking = speed - RELEASED * DELAY
-    full = braking - (RELEASED + FULL) / 2 * rises
-    way = (speed + braking) / 2 * DELAY + braking * rises - RELEASED / 2 * rises**2 - JERK / 6 * rises**3
-    return way + full**2 / (2 * FULL)
+def stopping_distance(speed: float, grip: float = FULL) -> float:
+    """Returns the way in metres that the careful driver needs to stop, from a danger on and from 3 m/s on,
+    where the road lets it brake with ``grip`` m/s^2 at most."""
+    full, released = min(grip, FULL), min(grip, RELEASED)
+    rises = (full - released) / JERK
+    braking = speed - released * DELAY
+    fastest = braking - (released + full) / 2 * rises
+    way = (speed + braking) / 2 * DELAY + braking * rises - released / 2 * rises**2 - JERK / 6 * rises**3
+    return way + fastest**2 / (2 * full)
