@@ -48,7 +48,7 @@ def main() -> None:
             count["driven"] += 1
             count[f"{verdict.outcome} {verdict.cause or ''}".strip()] += 1
             count["collision"] += bool(hits)
-            count["collision at fault"] += any(each.at_fault for each in hits)
+            count["collision at fault"] += bool(verdict.is_at_fault)
             if hits and driver != "blind":
                 print(f"{driver}, seed {number}: {drawn.plan}: {verdict.description}", flush=True)
     for driver, count in counts.items():

@@ -23,5 +23,5 @@ def test_nobody_is_touched_by_the_fault_of_reference(plan: str) -> None:
     assert run.drive.others is not None
     assert len(run.drive.others.actors) > 2
     contacts = [each.contact for each in run.verdict.incidents or () if each.contact is not None]
-    assert not any(contact.at_fault for contact in contacts)
+    assert not any(contact.nuplan_at_fault for contact in contacts)
     assert run.drive.ended == "goal"

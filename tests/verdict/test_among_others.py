@@ -52,7 +52,7 @@ def test_a_rear_end_collision_is_told_with_everything() -> None:
     contact = found.contact
     assert contact is not None
     assert (found.other, contact.face, contact.other_face) == ("van 1", "front", "rear")
-    assert contact.at_fault
+    assert contact.nuplan_at_fault
     assert (contact.speed, contact.other_speed, contact.impact_speed) == pytest.approx((15, 5, 10), abs=2e-3)
     # the car covers -2.93 to -1.07, the van -4.08 to -1.92
     assert contact.overlap == pytest.approx((2.93 - 1.92) / 1.86)
@@ -95,7 +95,7 @@ def test_faces_and_faults(own: Any, kind: str, other: Any, faces: tuple[str, str
     assert found.face == faces[0]
     if kind not in ("adult", "bicycle"):  # their corner may be the first to touch
         assert found.other_face == faces[1]
-    assert found.at_fault == fault
+    assert found.nuplan_at_fault == fault
     assert (found.overlap is None) == (found.face != "front")
 
 

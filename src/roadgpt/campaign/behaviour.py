@@ -113,7 +113,10 @@ def among_others(verdict: Verdict) -> dict[str, float]:
     measured = {"GAP": verdict.least_gap, "TTC": verdict.least_ttc}
     out |= {name: found for name, found in measured.items() if found is not None}
     if first is not None:
-        out |= {"AT_FAULT": float(first.at_fault), "IMPACT": round(3.6 * first.impact_speed, DECIMALS)}
+        out |= {
+            "AT_FAULT": float(bool(verdict.is_at_fault)),
+            "IMPACT": round(3.6 * first.impact_speed, DECIMALS),
+        }
     return out
 
 

@@ -254,6 +254,10 @@ def _run_lines(run: Run, again: Sequence[str]) -> Iterator[str]:
             yield f"  scenario  {row.test}"
         if row.criticality:
             yield f"  others    {row.criticality}"
+        if verdict.law is not None:
+            other = next(str(each.other) for each in verdict.incidents or () if each.contact)
+            told = verdict.law.said(other) or "nobody's offence"
+            yield f"  law       {told}; at fault: {verdict.at_fault}"
         yield f"  oracle    {oracle_in_words(limits.oracle)}"
     designing = run.designing
     if run.spent is not None:  # on language models

@@ -6,10 +6,10 @@ conservative advancement: nobody can come closer than the distance, divided by t
 The distance is that of the separating axis theorem, which is never larger than the true one (Gottschalk, Lin
 and Manocha 1996).
 
-The fault is that of nuPlan (Karnchanachari et al. 2024, "no at-fault collisions"): the tested car's, if it
-moves and hits somebody who stands, or hits somebody with its front, or with a side while part of it is
-outside its lane. It is not the tested car's if it stands, if it is hit in its rear by somebody who moves, or
-at a side within its lane.
+``nuplan_at_fault`` is that of nuPlan (Karnchanachari et al. 2024, "no at-fault collisions"): it is the tested
+car's fault, if it moves and hits somebody who stands, or hits somebody with its front, or with a side while
+part of it is outside its lane. It is not the tested car's if it stands, if it is hit in its rear by somebody
+who moves, or at a side within its lane.
 """
 
 from typing import TYPE_CHECKING
@@ -172,7 +172,7 @@ def _described(drive: "Drive", step: int, number: int, share: float) -> Incident
             other_speed=its,
             impact_speed=float(np.hypot(*impact)),
             overlap=float(np.ptp(across) / drive.car.width) if faces[0] == "front" else None,
-            at_fault=bool(fault),
+            nuplan_at_fault=bool(fault),
         ),
     )
 

@@ -2,7 +2,6 @@
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +18,7 @@ from roadgpt.verdict.verdict import (
     STANDS,
     Cause,
     Face,
+    Fault,
     Incident,
     Outcome,
     Side,
@@ -44,6 +44,9 @@ INCIDENTS: dict[str, str] = {
     "speeding": "above the speed limit",
 }
 
+FAULTS: dict[Fault | None, str] = {
+    "ego": "at fault", "other": "not at fault", "both": "both at fault", "nobody": "nobody at fault",
+}  # fmt: skip
 FACES: dict[Face, str] = {"front": "front", "rear": "rear", "left": "left side", "right": "right side"}
 
 LEAST = 0.005  # m; smaller distances beyond a marking are not stated
@@ -135,7 +138,7 @@ def judge(
     beyond = most_beyond(road, drive, world)
     handed_to = drive.handed_to(step) if cause else None
     outcome: Outcome = "FAIL" if cause else "PASS"
-    found, excuse = None, ""
+    found, avoidable, excuse = None, None, ""
     gap, ttc = _least(road, drive, world, incidents or ())
     is_yielding = handed_to and cause in GIVES_WAY  # what came of it may be a matter of the brakes
     hit = _contact_of(incidents or (), "collision", 0.0) if is_yielding or cause == "collision" else None
@@ -144,10 +147,14 @@ def judge(
 
         found = avoidance_of(road, drive, world, hit)
         is_avoidable = found.is_avoidable or found.is_own_doing
+        avoidable = is_avoidable if cause == "collision" else None
         outcome = "FAIL" if is_avoidable or cause != "collision" else "UNAVOIDABLE"
-        if cause == "collision" and hit.contact is not None and found.is_own_doing:
-            contact = replace(hit, contact=replace(hit.contact, at_fault=True))
-            incidents = tuple(contact if each is hit else each for each in incidents or ())
+    law, fault, first = None, None, _contact_of(incidents or (), "collision", 0.0)
+    if first is not None and first.contact is not None:
+        from roadgpt.verdict.law import fault_of, law_of
+
+        law = law_of(road, drive, world, incidents or ())
+        fault = fault_of(law, first.contact, bool(found and found.is_own_doing))
     if handed_to and outcome == "FAIL":
         excuse = f"{handed_to} drove where the car failed, so the failure is not {drive.driver}'s"
         if hit and found and found.is_avoidable and _asks_for_emergency_braking(drive, hit):
@@ -157,7 +164,7 @@ def judge(
         description = _kept(drive, world, least, beyond, behind)
     else:
         whom = next((each.other for each in incidents or () if each.kind == cause), None)
-        description = _failed(road, drive, world, step, cause, side, contact, whom, outcome)
+        description = _failed(road, drive, world, step, cause, side, contact, whom, fault)
     untold = [each for each in incidents or () if each is not contact or cause == "collision"]
     description += _counted(untold, cause) + _who_drove(drive.shares, excuse)
     s, x, y, time = (float(drive[name][step]) for name in ("s", "x", "y", "time"))
@@ -188,6 +195,9 @@ def judge(
         least_gap=gap,
         least_ttc=ttc,
         own_share=drive.shares.get(drive.driver),
+        law=law,
+        avoidable=avoidable,
+        at_fault=fault,
         avoided_by=found and found.by,
         criterion=found and found.criterion,
         handed_to=handed_to,
@@ -331,7 +341,7 @@ def _failed(
     side: Side | None,
     contact: Incident | None,
     whom: str | None,
-    outcome: Outcome,
+    fault: Fault | None,
 ) -> str:
     profile = world.profile_of(road)
     is_beside = (
@@ -354,11 +364,11 @@ def _failed(
         whom=whom,
         patience=STUCK_TIME if drive.others is None else STUCK_AMONG_OTHERS,
         **_place(road, world, cause, float(drive["s"][step])),
-        contact=_touched(contact, f"after {contact.at_s:.0f} m", outcome) if contact else "hit somebody",
+        contact=_touched(contact, f"after {contact.at_s:.0f} m", fault) if contact else "hit somebody",
     )
     if contact is None or cause == "collision":
         return told
-    return f"{told} and {_touched(contact, later, outcome)}" + (f"; {how}" if cause == "out of lane" else "")
+    return f"{told} and {_touched(contact, later, fault)}" + (f"; {how}" if cause == "out of lane" else "")
 
 
 def _place(road: "Road", world: "World", cause: Cause, s: float) -> dict[str, str]:
@@ -372,9 +382,8 @@ def _place(road: "Road", world: "World", cause: Cause, s: float) -> dict[str, st
     return {"deck": "the bridge" if kinds else "the road", "wall": wall}
 
 
-def _touched(incident: Incident, where: str, outcome: Outcome) -> str:
-    """Returns in words how the tested car and somebody else touched, and whose fault it was: the tested car's
-    only if somebody could have avoided it."""
+def _touched(incident: Incident, where: str, fault: Fault | None) -> str:
+    """Returns in words how the tested car and somebody else touched, and whose fault it was."""
     found, name = incident.contact, incident.other
     assert found is not None
     is_hit = found.face == "rear" or (found.face != "front" and found.other_face == "front")
@@ -382,9 +391,7 @@ def _touched(incident: Incident, where: str, outcome: Outcome) -> str:
     own, other = FACES[found.face], FACES[found.other_face]
     its = f"at {abs(found.other_speed) * 3.6:.0f} km/h" if abs(found.other_speed) > STANDS else "standing"
     overlap = "" if found.overlap is None else f" and {percent(found.overlap)} overlap"
-    fault = "; at fault" if outcome == "FAIL" else ""
-    fault = fault if found.at_fault else "; not at fault"
     return (
         f"{verb} {where} at {found.speed * 3.6:.0f} km/h: its {own} met the {other} of {name}, {its}, with "
-        f"{found.impact_speed * 3.6:.0f} km/h of difference{overlap}{fault}"
+        f"{found.impact_speed * 3.6:.0f} km/h of difference{overlap}; {FAULTS[fault]}"
     )

@@ -72,7 +72,7 @@ def taken(
                 continue
             first, last = start + np.array(place.own) / lanes[leg].length * (end - start)
             comes, clears = reached(first), reached(last, -drive.car.length)
-            for number, begins, arrives, leaves in _who_drives(others, lanes[key], place.others[0]):
+            for number, begins, arrives, leaves in who_drives(others, lanes[key], place.others[0]):
                 name, v = others.actors[number].name, others.states[:, number, SPEED]
                 missed = [each.at_time for each in known if each.other == name and each.contact is None]
                 if enters <= hits.get(name, -1.0) and begins <= hits[name] <= leaves + LATER:
@@ -90,7 +90,7 @@ def taken(
         yield "failure to yield", time, others.actors[number].name
 
 
-def _who_drives(others: "Tracks", lane: Lane, place: float) -> Iterator[tuple[int, float, float, float]]:
+def who_drives(others: "Tracks", lane: Lane, place: float) -> Iterator[tuple[int, float, float, float]]:
     """Yields for everybody who drives along a lane, from its start on: the number, and when its front comes
     into the lane, comes to a station, and leaves the lane or was seen last."""
     import shapely

@@ -9,9 +9,9 @@ import math
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
-from typing import Any, ClassVar, Literal, Self, get_args
+from typing import Annotated, Any, ClassVar, Literal, Self, get_args
 
-from pydantic import ConfigDict, ValidationError
+from pydantic import AliasChoices, ConfigDict, Field, ValidationError
 
 from roadgpt.errors import UsageError
 from roadgpt.reading import strictly
@@ -37,6 +37,9 @@ SEVERITIES: tuple[Severity, ...] = get_args(Severity)
 PARTLY, MOSTLY = 0.1, 0.5
 """Shares of the car's bounding box outside its lane above which the level is "partly" or "mostly outside"."""
 STANDS = 0.05  # m/s, up to which nuPlan takes somebody for standing
+Party = Literal["ego", "other"]
+Fault = Literal["ego", "other", "both", "nobody"]
+Offence = Literal["red light", "stop", "priority", "wrong way", "speed", "lane", "distance"]
 IncidentKind = Literal[
     "out of lane", "wrong turn", "wrong way", "off road", "stop line", "red light", "failure to yield",
     "collision", "near miss", "blocked", "speeding",
@@ -62,9 +65,28 @@ class Contact:
     overlap: float | None
     """Share of the tested car's width, 0 to 1, that lay before the other; None if its front was not
     touched."""
-    at_fault: bool
-    """Whether it is the tested car's fault: as ``roadgpt.verdict.contact`` defines it, or because it brought
-    the collision about itself (``roadgpt.verdict.avoidable``)."""
+    nuplan_at_fault: Annotated[
+        bool, Field(validation_alias=AliasChoices("nuplan_at_fault", "at_fault"))  # its name in version 1
+    ]
+    """Whether it is the tested car's fault by nuPlan, as ``roadgpt.verdict.contact`` defines it."""
+
+
+@dataclass(frozen=True)
+class Law:
+    """What the law says of a collision of the tested car, "ego", and another one; see
+    ``roadgpt.verdict.law``."""
+
+    way: Party | None
+    """Who had the way; None if no rule gave it to one of them."""
+    ego: tuple[Offence, ...]
+    other: tuple[Offence, ...]
+
+    def said(self, name: str) -> str:
+        """Returns it in words; ``name`` is that of the other."""
+        names = {"ego": "the tested car", "other": name}
+        told = [f"{names[self.way]} had the way"] if self.way else []
+        offences = {"ego": self.ego, "other": self.other}
+        return "; ".join(told + [f"{names[who]}: {', '.join(its)}" for who, its in offences.items() if its])
 
 
 @dataclass(frozen=True)
@@ -154,6 +176,13 @@ class Verdict:
     contact; None if there was none."""
     own_share: float | None = None
     """The share of the way, 0 to 1, that the driver drove itself; None if it never handed over."""
+    law: Law | None = None
+    """Who had the way in the first collision, and the offences of each; None if there was no collision."""
+    avoidable: bool | None = None
+    """Whether the collision that is the cause could have been avoided; None for other causes."""
+    at_fault: Fault | None = None
+    """Whose fault the first collision was, by ``law`` and the car's conduct (``roadgpt.verdict.law``);
+    whether it could have been avoided is another question."""
     avoided_by: tuple[str, ...] | None = None
     """Those of the four drivers of ``roadgpt.verdict.careful`` who avoid the collision that is the cause;
     None for other causes."""
@@ -174,6 +203,14 @@ class Verdict:
     def first_contact(self) -> Contact | None:
         """How the tested car and somebody else touched first; None if there was no collision."""
         return next((each.contact for each in self.incidents or () if each.contact is not None), None)
+
+    @property
+    def is_at_fault(self) -> bool | None:
+        """Whether the first collision was the tested car's fault, also together with the other's; by nuPlan
+        in verdicts of version 1 of the rules. None if there was no collision."""
+        if self.at_fault is not None or self.first_contact is None:
+            return None if self.at_fault is None else self.at_fault in ("ego", "both")
+        return self.first_contact.nuplan_at_fault
 
     @property
     def severity(self) -> Severity:

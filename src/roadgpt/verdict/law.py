@@ -1,0 +1,185 @@
+"""Says who had the way in a collision, which offences each of the two committed, and whose fault it was.
+
+Sources: Vienna Convention on Road Traffic, 1968, and, for a lane change that endangers somebody, UN R79.
+
+- red light, stop, priority: at a junction, as in ``verdict.right_of_way``, for both alike. Who drives through
+  red has no priority. Somebody on a crosswalk has the way (article 21), unless the car has green there; who
+  comes from beside the road elsewhere has not (articles 12 and 21);
+- wrong way: the middle of a box is in a lane of the other direction, or the box moves backwards; lane: only
+  part of it reaches out of its own lane (article 10), or it came into the other's lane less than
+  UN R79, 5.6.4.7, asks for: who is behind would have to brake with more than 3 m/s2, begun after 0.4 s, to
+  keep a distance of 1 s (articles 11 and 14);
+- distance: it ran into who was ahead in its own lane, or stood there (article 13);
+- speed: as in ``verdict.incidents``, for 1 s within the last 3 s.
+
+At fault is whose offence has to do with the contact, and the tested car also where it brought the collision
+about itself (``verdict.avoidable``), such as by braking for nothing (article 17). Speed is none of who is hit
+in the rear. Things and animals commit no offences. That one could have braked in time is none either.
+"""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.brief.scene import VEHICLES
+from roadgpt.network import legs_of, network_of, only_road
+from roadgpt.network.lanes import lanes_of
+from roadgpt.network.markings import CROSSED
+from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y
+from roadgpt.verdict.contact import CORNER, middles
+from roadgpt.verdict.incidents import OVER, OVER_BY, STOOD, STOP_WITHIN, TOO_FAST, limits_at
+from roadgpt.verdict.measures import ACROSS, driven_lane
+from roadgpt.verdict.right_of_way import LATER, who_drives
+from roadgpt.verdict.verdict import STANDS, Contact, Fault, Incident, Law, Offence, Party
+
+if TYPE_CHECKING:
+    from roadgpt.drive import Drive
+    from roadgpt.road import Road, World
+
+LIABLE = (*VEHICLES, "adult", "child")
+BEFORE = 15.0  # m before a junction, within which its lines lie
+RECENT = 3.0  # s before the contact
+BEGINS, BRAKES, APART = 0.4, 3.0, 1.0  # UN R79, 5.6.4.7: s, m/s^2, s
+
+Found = tuple[Party | None, set[Offence], set[Offence]]
+"""Who had the way, and the offences of the tested car and of the other."""
+
+
+def law_of(road: "Road", drive: "Drive", world: "World", incidents: Sequence[Incident]) -> Law:
+    """Returns what the law says of the first collision among the incidents."""
+    hit = next(each for each in incidents if each.contact is not None)
+    assert drive.others is not None
+    number = [each.name for each in drive.others.actors].index(str(hit.other))
+    way, own, its = _at_junction(road, drive, world, incidents, hit, number) or _on_road(
+        road, drive, world, hit, number
+    )
+    recent = (drive["time"] > hit.at_time - RECENT) & (drive["time"] <= hit.at_time)
+    if _is_fast(drive["speed"][recent], limits_at(road, world, drive["s"][recent]), drive["time"][1]):
+        own.add("speed")
+    last = int(hit.at_time / STEP + 1e-9)
+    states, limit = drive.others.states[: last + 1, number], limits_at(road, world, np.array([hit.at_s]))
+    if only_road(road, world) is None:
+        (places,) = lanes_of(network_of(road, world)).places(states[-1:, [X, Y]])
+        lanes = (each.lane.member.profile.lanes[each.lane.id.lane] for each in places)
+        limit = np.array(
+            [max((each.speed_limit or world.limits.speed_limit for each in lanes), default=np.inf)]
+        )
+    if _is_fast(np.abs(states[-round(RECENT / STEP) :, SPEED]), limit, STEP):
+        its.add("speed")
+    is_liable = drive.others.actors[number].kind in LIABLE
+    return Law(way, tuple(sorted(own)), tuple(sorted(its)) if is_liable else ())
+
+
+def fault_of(law: Law, contact: Contact, is_own_doing: bool) -> Fault:
+    """Returns whose fault a collision was, by the law and the tested car's conduct."""
+    speed_of: dict[bool, set[Offence]] = {True: {"speed"}, False: set()}  # who is hit in the rear
+    own = is_own_doing or bool({*law.ego} - speed_of[contact.face == "rear"])
+    its = bool({*law.other} - speed_of[contact.other_face == "rear"])
+    return ("both" if its else "ego") if own else "other" if its else "nobody"
+
+
+def _is_fast(speed: NDArray[np.float64], limit: NDArray[np.float64] | float, step: float) -> bool:
+    return bool(((speed > OVER * limit) & (speed > limit + OVER_BY)).sum() * step >= TOO_FAST)
+
+
+def _at_junction(
+    road: "Road", drive: "Drive", world: "World", incidents: Sequence[Incident], hit: Incident, number: int
+) -> Found | None:
+    """Returns what the rules of a junction say; None if the two do not come there from different arms."""
+    from roadgpt.traffic.following import GREEN, RED
+    from roadgpt.traffic.lights import lights_of
+
+    network, others = network_of(road, world), drive.others
+    assert others is not None
+    lanes, time = lanes_of(network), hit.at_time
+    for leg, start, end in zip(legs_of(road, world), road.starts, road.starts[1:], strict=False):
+        if not start - drive.car.length < hit.at_s < end + drive.car.length:
+            continue
+        ways = [
+            (leaves - begins, begins, key)
+            for key in (lanes.met_by(leg) if leg.road in network.connection_of else ())
+            if key.road in network.connection_of
+            and network.connection_of[key.road][1].incoming != network.connection_of[leg.road][1].incoming
+            for who, begins, _, leaves in who_drives(others, lanes[key], 0.0)
+            if who == number and begins <= time <= leaves + LATER
+        ]
+        if not ways:
+            continue
+        _, begins, key = max(ways)
+        arm, before = network.connection_of[key.road][1].incoming, lanes[lanes[key].predecessors[0]]
+        states = others.states[: int(begins / STEP) + 1, number]
+        away = np.hypot(*(states[:, [X, Y]] - states[-1, [X, Y]]).T) - (before.before_line or 0.0)
+        crossed = int(np.flatnonzero(away > 0).max(initial=-1)) + 1  # the first with its front past the line
+        shown = lights_of(road, world, drive.seed).shown(arm, STEP * crossed) if drive.lights else GREEN
+        done = {each.kind for each in incidents if start - BEFORE < each.at_s <= hit.at_s}
+        red, its_red = "red light" in done, shown == RED
+        way: Party | None = "other" if key in lanes.gives_way_to(leg) else None
+        way = "ego" if leg in lanes.gives_way_to(key) else way
+        way = way if red == its_red else "other" if red else "ego"
+        own, its = set[Offence](["red light"] * red), set[Offence](["red light"] * its_red)
+        near = (away > 0) & (away <= STOP_WITHIN)
+        if "stop line" in done:
+            own.add("stop")
+        if before.control == "stop" and not (np.abs(states[near, SPEED]) < STOOD).any():
+            its.add("stop")
+        if way is not None and not (red or its_red):
+            (own if way == "other" else its).add("priority")
+        if way or own or its:
+            return None if red and its_red else way, own, its
+    return None
+
+
+def _on_road(road: "Road", drive: "Drive", world: "World", hit: Incident, number: int) -> Found:
+    """Returns what the rules of a road say: who was in the lane in which the two touched, and since when."""
+    others, contact, line = drive.others, hit.contact, driven_lane(road, world)
+    assert others is not None
+    assert contact is not None
+    actor, last = others.actors[number], int(hit.at_time / STEP + 1e-9)
+    states = others.states[: last + 1, number]
+    states = states[np.flatnonzero(np.isnan(states[:, X])).max(initial=-1) + 1 :]
+    half = np.broadcast_to(np.array(actor.size[:2]) / 2, (len(states), 2))
+    boxes = line.boxes(states[:, X], states[:, Y], states[:, HEADING], half, states[:, SPEED])
+    when = STEP * np.arange(last + 1 - len(states), last + 1)
+    car = [np.interp(when, drive["time"], each) for each in (*middles(drive).T, drive["speed"], drive["vx"])]
+    size = np.broadcast_to([[drive.car.length / 2, drive.car.width / 2]], (len(when), 2))
+    mine = line.boxes(car[0], car[1], car[2], size, car[3])
+    x, y, zero = (np.array([each]) for each in (*contact.xy, 0.0))
+    spot = line.boxes(x, y, zero, half[:1], zero)
+    reach = float(np.interp(spot.along[0], line.run, line.width)) / 2
+    is_own = abs(float(spot.t[0])) < reach - CORNER
+    along, across = boxes.velocity[-1]
+    stands = np.hypot(along, across) <= STILL
+    if car[4][-5:].max() < -STILL:  # for half a second: more than rolling back
+        return "other", {"wrong way"}, set()
+    if not is_own:
+        is_over = abs(mine.t[-1]) > reach and along < 0
+        return "other", {"wrong way" if is_over else "lane"}, set()
+    if not stands and abs(across) > ACROSS * np.hypot(along, across):
+        if actor.kind in ("adult", "child") and _has_crosswalk(road, world, drive, hit, float(spot.along[0])):
+            return "other", {"priority"}, set()
+        return "ego", set(), {"priority"}
+    if not stands and along < 0:
+        return "ego", set(), {"wrong way" if abs(boxes.t[-1]) < reach else "lane"}
+    if contact.face == "rear" or car[3][-1] <= STANDS:
+        return "ego", set(), {"distance"}
+    if contact.face != "front":
+        return "ego", set(), {"lane"}
+    came = min(int(np.flatnonzero(~line.holds(boxes)).max(initial=-1)) + 1, len(when) - 1)
+    closing = max(mine.velocity[came, 0] - boxes.velocity[came, 0], 0.0)
+    gap = boxes.along[came] - boxes.reach[0][came] - mine.along[came] - drive.car.length / 2
+    if came and gap < closing * BEGINS + closing**2 / (2 * BRAKES) + boxes.velocity[came, 0] * APART:
+        return "ego", set(), {"lane" if actor.kind in VEHICLES else "priority"}
+    return "other", {"distance"}, set()
+
+
+def _has_crosswalk(road: "Road", world: "World", drive: "Drive", hit: Incident, s: float) -> bool:
+    """Whether there is a crosswalk at a station, and the tested car has no green light for it."""
+    crossed = network_of(road, world).crossed
+    for each in road.passages:
+        if each.arrival in crossed and each.start - CROSSED <= s <= each.start:
+            return not (drive.lights and each.control == "lights")
+        if each.departure in crossed and each.end <= s <= each.end + CROSSED:
+            return True
+    return False
