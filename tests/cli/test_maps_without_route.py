@@ -37,12 +37,25 @@ def test_opendrive_of_a_map_without_a_route_has_an_empty_route(name: str) -> Non
     assert Path(f"out/{name}.xodr").read_bytes() == Path("out/routed.xodr").read_bytes()
 
 
-@pytest.mark.parametrize("format_", ["csv", "commonroad", "openscenario"])
+@pytest.mark.parametrize("format_", ["csv", "openscenario"])
 def test_formats_that_hold_a_way_need_a_route(format_: str) -> None:
     done = invoke("export", "map.json", "--to", format_, "--out", "out")
     assert done.exit_code == 1
     assert f"map.json: {format_} holds a way to drive, and {NO_ROUTE}" in done.stderr
     assert not list(Path().glob("out/*"))
+
+
+def test_commonroad_has_no_task_without_a_route() -> None:
+    """All else is the same, but for the place of the speed limit, which is where the route begins."""
+    assert invoke("export", "map.json", "--to", "commonroad", "--out", "out").exit_code == 0
+    assert invoke("export", "routed.json", "--to", "commonroad", "--out", "out").exit_code == 0
+    alone, routed = (Path(f"out/{name}.cr.xml").read_text() for name in ("map", "routed"))
+    assert "planningProblem" not in alone
+    assert alone.count("<lanelet id=") == routed.count("<lanelet id=") > 0
+    reader = pytest.importorskip("commonroad.common.file_reader")
+    scenario, problems = reader.CommonRoadFileReader("out/map.cr.xml").open()
+    assert len(scenario.lanelet_network.lanelets) == alone.count("<lanelet id=")
+    assert problems.planning_problem_dict == {}
 
 
 def test_formats_without_a_way_take_a_map() -> None:

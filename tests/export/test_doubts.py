@@ -7,11 +7,15 @@ import pytest
 from click.testing import CliRunner
 
 from exported import ROADS, WORLD
+from network.changing import passing
 from profiled import bend
+from roadgpt import plugins
 from roadgpt.cli import app
 from roadgpt.export import doubts
 from roadgpt.network import read_road
 from roadgpt.road import Profile, Road
+
+ROUTE = passing("crossroads", "left")
 
 
 @pytest.mark.parametrize("name", ROADS)
@@ -43,6 +47,7 @@ def test_the_command_says_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
 
 
 OTHERS = "others on the road"
+LEAVE_OUT = [*{*plugins.names("exporters")} - {"openscenario", "heightmap"}]
 SCENE = "truck ahead gap=30 v=50: brake decel=6; fog 60"
 
 
@@ -57,7 +62,7 @@ def among_others(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize(
     ("command", "told"),
     [
-        *((f"export --to {name}", f"{name}: {OTHERS} left out") for name in ("csv", "gltf", "geojson")),
+        *((f"export --to {name}", f"{name}: {OTHERS} left out") for name in LEAVE_OUT),
         ("export --to openscenario", None),
     ],
 )
@@ -69,3 +74,24 @@ def test_who_is_left_out_is_told(
     assert result.exit_code == 0, result.output
     said = result.stderr.replace("\n", " ")
     assert "left out" not in said if told is None else told in said
+
+
+def test_who_is_left_out_is_told_also_where_nobody_has_driven() -> None:
+    world = WORLD.changed(scene="car parked")
+    for name in LEAVE_OUT:
+        assert f"{name}: {OTHERS} left out" in doubts(ROADS["flat points"], [name], world)
+    assert doubts(ROADS["flat points"], ["openscenario"], world) == ()
+
+
+def test_a_format_that_refuses_keeps_no_other_from_being_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("crossing.json").write_text(json.dumps(ROUTE.to_json()))
+    command = ["export", "crossing.json", "--to", "sumo,opendrive,crg,csv", "--out", "out"]
+    result = CliRunner().invoke(app, command)
+    assert result.exit_code == 1
+    refused = "crossing.json: sumo cannot hold junctions yet; opendrive can, and netconvert reads it"
+    assert f"{refused}; crg cannot hold junctions yet; opendrive can" in result.stderr
+    assert {path.suffix for path in Path("out").iterdir()} == {".xodr", ".json", ".csv"}
+    assert result.stdout.split() == [f"out/crossing.{end}" for end in ("route.json", "xodr", "csv")]

@@ -26,8 +26,12 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Tracks]:
     return folder / "scene.drive.xosc", tracks
 
 
-def test_asams_checker_objects_to_nothing(written: tuple[Path, Tracks]) -> None:
-    issues, ends = asam_says(written[0])
+BOTH = pytest.mark.parametrize("name", ["scene.drive.xosc", "scene.xosc"])  # the drive, and the scenario
+
+
+@BOTH
+def test_asams_checker_objects_to_nothing(written: tuple[Path, Tracks], name: str) -> None:
+    issues, ends = asam_says(written[0].with_name(name))
     assert issues == []
     assert ends == {"completed": 17}
 
@@ -44,9 +48,10 @@ def motions(root: ET.Element, name: str) -> list[tuple[float, np.ndarray]]:
     return [(time, np.array([float(place.attrib[key]) for key in "xyzhpr"])) for time, place in found]
 
 
-def test_everybody_is_where_the_drive_recorded_them(written: tuple[Path, Tracks]) -> None:
+@BOTH
+def test_everybody_is_where_the_drive_recorded_them(written: tuple[Path, Tracks], name: str) -> None:
     path, tracks = written
-    root = ET.parse(path).getroot()
+    root = ET.parse(path.with_name(name)).getroot()
     for number, actor in enumerate(tracks.actors):
         entity = root.find(f"Entities/ScenarioObject[@name='{actor.name}']")
         centre = entity.find(".//Center").attrib
@@ -67,6 +72,32 @@ def test_everybody_is_where_the_drive_recorded_them(written: tuple[Path, Tracks]
         if number == LATE:  # it climbs and falls with the road
             grade = [float(ROAD.grade(ROAD.locate(*pose[:2])[0])) for _, pose in moments[3:-3]]
             np.testing.assert_allclose([-np.tan(pose[4]) for _, pose in moments[3:-3]], grade, atol=0.03)
+
+
+def test_who_is_placed_stands_where_a_drive_of_the_same_seed_begins(tmp_path: Path) -> None:
+    """Nobody has driven: the others are where the drive has them at first, with their speed of that time."""
+    words = "straight 160 && truck ahead gap=30 v=50: brake decel=6; car parked"
+    driven, alone = (
+        perform(words, 4, setup=Setup(driver="reference", reader="plan", drives=drives))
+        for drives in (True, False)
+    )
+    assert driven.drive is not None
+    assert driven.drive.others is not None
+    said = list[str]()
+    export(alone, tmp_path, ["openscenario"], said.append)
+    assert said == []
+    assert asam_says(tmp_path / "road.xosc") == ([], {"completed": 17})
+    assert not (tmp_path / "road.drive.xosc").exists()
+    tracks = driven.drive.others
+    root = ET.parse(tmp_path / "road.xosc").getroot()
+    assert len(tracks.actors) == 2
+    for actor, state in zip(tracks.actors, tracks.states[0], strict=True):
+        ((_, pose),) = motions(root, actor.name)
+        ahead = float(root.find(f"Entities/ScenarioObject[@name='{actor.name}']//Center").attrib["x"])
+        way = [np.cos(state[3]), np.sin(state[3])]
+        np.testing.assert_allclose(pose[:2] + ahead * np.array(way), state[:2], atol=2e-3)
+        init = root.find(f"Storyboard/Init/Actions/Private[@entityRef='{actor.name}']")
+        assert float(init.find(".//AbsoluteTargetSpeed").attrib["value"]) == pytest.approx(state[4])
 
 
 def test_who_comes_late_and_who_leaves_is_added_and_deleted(written: tuple[Path, Tracks]) -> None:

@@ -7,6 +7,7 @@ Each format is a plug-in, for example:
         suffix = ".xodr"                                       # suffix of the exported file
         holds_junctions = True                                 # optional: the format can hold networks
         needs_route = True                                     # optional: a map without a route is refused
+        holds_others = True                                    # optional: it holds the others on the road
         def save(self, road, path, world, poses=None) -> None
 
 An exporter writes ``path``, and may write further files with the same stem to the same folder. The same
@@ -30,6 +31,7 @@ from roadgpt.road.edges import fold
 
 __all__ = ["Exporter", "Others", "Poses", "doubts", "exporter_of", "save"]
 
+OTHERS = "others on the road"
 EDGELESS = ("csv", "sbft", "crg")  # formats that draw no edges of lanes
 
 
@@ -39,7 +41,9 @@ class Exporter(Protocol):
 
     An exporter whose attribute ``holds_junctions`` is True also gets routes through junctions
     (``roadgpt.network.Route``). An exporter without this attribute gets single roads only. An exporter whose
-    attribute ``needs_route`` is also True gets no maps without a route (``road.has_way`` is False)."""
+    attribute ``needs_route`` is also True gets no maps without a route (``road.has_way`` is False). An
+    exporter whose attribute ``holds_others`` is True has one more argument, ``placed``: the others on a road
+    where they begin, if nobody has driven it. Of all others it is said that they leave them out."""
 
     name: str
     """Name under which the format is registered as a plug-in."""
@@ -77,6 +81,7 @@ def save(
     world: World,
     name: str = "road",
     poses: Poses | None = None,
+    placed: Others | None = None,
 ) -> tuple[Path, ...]:
     """Writes a road in the given formats. Returns the paths of all files, in the order of the formats.
 
@@ -89,6 +94,7 @@ def save(
         world: Defines friction, speed limit, and the lanes of a road without its own cross-section.
         name: Name of the files without suffix.
         poses: The motion of the car in a drive along the road, for formats that can hold a drive.
+        placed: The others on the road as they begin, a single sample, for formats that can hold them.
 
     Raises:
         PartError: A format is unknown.
@@ -108,7 +114,8 @@ def save(
         for part in parts:
             # each exporter writes into a folder of its own, so that nothing remains if it fails
             with tempfile.TemporaryDirectory(dir=folder, prefix=".export-", suffix=".part") as draft:
-                part.save(road, Path(draft, name + part.suffix), world, poses)
+                more: tuple[Any, ...] = (placed,) if getattr(part, "holds_others", False) else ()
+                part.save(road, Path(draft, name + part.suffix), world, poses, *more)
                 written += _moved(Path(draft), folder)
     except OSError as error:
         why = error.strerror or error
@@ -132,10 +139,11 @@ def doubts(road: Road, formats: Sequence[str], world: World, poses: Poses | None
         "superelevation": profile.superelevation_angle is not None,
         "changes of width": any(isinstance(width, CubicProfile) for width in widths),
         "the land around": world.has_ground,
-        "others on the road": poses is not None and poses.others is not None,
+        OTHERS: world.scene.has_others or (poses is not None and poses.others is not None),
     }
     for part in map(exporter_of, formats):
-        said += [f"{part.name}: {what} left out" for what in getattr(part, "lacks", ()) if there[what]]
+        lacks = (*getattr(part, "lacks", ()), *(() if getattr(part, "holds_others", False) else (OTHERS,)))
+        said += [f"{part.name}: {what} left out" for what in lacks if there[what]]
         said += [f"{part.name}: {each}" for each in getattr(part, "doubts", lambda *_: ())(road, world)]
     return tuple(said)
 

@@ -4,47 +4,78 @@ Runs."""
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from roadgpt.drive import Drive
-from roadgpt.errors import ExportError
-from roadgpt.export import Others, Poses, doubts, save
+from roadgpt.errors import ExportError, UsageError
+from roadgpt.export import Others, Poses, doubts, exporter_of, save
+from roadgpt.export.ego import CAR, start_of
 from roadgpt.network import RoadEnd, network_of
 from roadgpt.road import Road, World
 from roadgpt.run.folder import Draw
 from roadgpt.run.model import Run
+
+if TYPE_CHECKING:
+    from roadgpt.traffic import Tracks
 
 NAME = "road"  # of the files in a Run's own folder
 
 
 def export(
     run: Run, folder: Path | str, formats: Sequence[str], tell: Callable[[str], None], name: str = NAME
-) -> tuple[Path, ...]:
-    """Writes the road of a Run in each format, and its drive if the format can hold one; ``tell`` gets the
-    doubts."""
+) -> tuple[tuple[Path, ...], dict[str, ExportError]]:
+    """Writes the road of a Run in each format, and its drive and the others if the format can hold them;
+    ``tell`` gets the doubts. Returns the files, and why formats refuse the road."""
     if run.road is None:
         raise ExportError(f"run {run.index} has no road to export: {run.description}")
-    poses = None if run.drive is None else poses_of(run.drive)
+    poses, placed = None if run.drive is None else poses_of(run.drive), None
     if run.drive is not None and poses is not None and run.drive.lights:
         poses = replace(poses, lights=_lights(run.road, run.drive, run.world))
-    written = save(run.road, folder, formats, run.world, name, poses)
-    for said in doubts(run.road, formats, run.world, poses):
+    holds_others = any(getattr(exporter_of(each), "holds_others", False) for each in formats)
+    if poses is None and holds_others and run.world.scene.has_others and run.road.has_way:
+        try:
+            placed = _placed(run.road, run.world, run.seed)
+        except UsageError as error:
+            tell(f"others on the road left out, who find no place: {error}")
+    written, refused = list[Path](), dict[str, ExportError]()
+    for format_ in formats:
+        try:
+            written += save(run.road, folder, [format_], run.world, name, poses, placed)
+        except ExportError as error:
+            refused[format_] = error
+    for said in doubts(run.road, [each for each in formats if each not in refused], run.world, poses):
         tell(said)
-    return written
+    return tuple(dict.fromkeys(written)), refused
 
 
 def poses_of(drive: Drive) -> Poses | None:
     """Returns how the car and the others moved in a drive; None if it has one step only."""
     if len(drive) < 2:
         return None
-    others = None
-    if drive.others is not None:
-        actors, states = drive.others.actors, drive.others.states
-        sizes = np.array([each.size for each in actors]).reshape(-1, 3)
-        names, kinds = tuple(each.name for each in actors), tuple(each.kind for each in actors)
-        others = Others(names, kinds, sizes, drive.others.time, states)
-    return Poses.of(drive.columns, others)
+    return Poses.of(drive.columns, None if drive.others is None else _others(drive.others))
+
+
+def _others(tracks: "Tracks") -> Others:
+    sizes = np.array([each.size for each in tracks.actors]).reshape(-1, 3)
+    names, kinds = (tuple(getattr(each, what) for each in tracks.actors) for what in ("name", "kind"))
+    return Others(names, kinds, sizes, tracks.time, tracks.states)
+
+
+def _placed(road: Road, world: World, seed: int) -> Others | None:
+    """Returns the others as they are when the tested car begins a drive."""
+    from roadgpt.traffic import TestedCar, begin  # only scenes that nobody has driven load it
+
+    road = world.lay(road)
+    if (traffic := begin(road, world, seed)) is None:
+        return None
+    s = start_of(road)
+    t = float(world.profile_of(road).middle(s))
+    x, y, _ = road.at(s + CAR.middle, t).tolist()
+    pose = x, y, float(road.heading(s)), world.first_speed, s, t
+    traffic.advance(TestedCar(*pose, CAR.length, CAR.width))
+    return _others(traffic.tracks())
 
 
 def _lights(road: Road, drive: Drive, world: World) -> dict[int, list[tuple[float, dict[RoadEnd, str]]]]:
@@ -71,10 +102,11 @@ class Exporting:
 
     def of_run(self, run: Run, folder: Path) -> None:
         """Writes the road of one Run in all formats; then ``draw``, if given, draws the Run's pictures."""
-        for format_ in self.formats if run.road is not None else ():
-            try:
-                export(run, folder, [format_], lambda said: self.tell(f"road {run.index}: {said}"))
-            except ExportError as error:
+        if self.formats and run.road is not None:
+            _, refused = export(
+                run, folder, self.formats, lambda said: self.tell(f"road {run.index}: {said}")
+            )
+            for format_, error in refused.items():
                 self.tell(f"road {run.index} is not exported to {format_}: {error}")
         if self.draw is not None:
             self.draw.of_run(run, folder)

@@ -12,7 +12,7 @@ from roadgpt.brief.words import LARGEST_MAP
 from roadgpt.cli import options, roads
 from roadgpt.cli.options import PATH, Argument, GroupedCommand, Heading, Option, named, whole
 from roadgpt.cli.streams import warn
-from roadgpt.errors import RoadGPTError, UsageError, command_line, explained
+from roadgpt.errors import ExportError, RoadGPTError, UsageError, command_line, explained
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -84,9 +84,11 @@ def export(
 
         with roads.named_in_errors(each.said):
             run = roads.run_of(each, world, geometry, quiet)
-            written = export(run, out, formats, tell, name)
-        if not quiet:
-            click.echo("\n".join(map(str, written)))
+            written, refused = export(run, out, formats, tell, name)
+            if not quiet and written:
+                click.echo("\n".join(map(str, written)))
+            if refused:
+                raise ExportError("; ".join(map(str, refused.values())))
 
     return roads.use_each(files, choice, write, takes_all=True)
 

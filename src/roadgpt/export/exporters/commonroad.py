@@ -137,12 +137,12 @@ class Crossings:
 
 
 class CommonRoad:
-    """CommonRoad scenario 2020a: lanelets in plan view, a speed limit, and the task to drive to the end."""
+    """CommonRoad scenario 2020a: lanelets in plan view, a speed limit, and the task to drive to the end, if
+    there is a route."""
 
     name = "commonroad"
     suffix = ".cr.xml"
     holds_junctions = True
-    needs_route = True
     lacks = ("heights", "superelevation", "the land around")
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
@@ -181,6 +181,8 @@ def document(road: Road, world: World) -> XmlElement:
     side = edges.left if world.profile_of(road).left_hand else edges.right
     limit = {"trafficSignID": SPEED_LIMIT, "additionalValue": number(round(world.limits.speed_limit, 6))}
     root.extended(_sign(sign, road.at(0.0, side)[:2].tolist(), "true", **limit), *junctions.elements())
+    if not road.has_way:
+        return root
     last = legs_of(road, world)[-1]
     goal = [each.id for each in lanelets if Leg(each.road, each.lane) == last][-1]
     return root.extended(_problem(sign + 1, road, world, goal))

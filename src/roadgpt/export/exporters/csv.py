@@ -28,7 +28,7 @@ class Csv:
     suffix = ".csv"
     holds_junctions = True
     needs_route = True
-    lacks = ("others on the road", "the land around")
+    lacks = ("the land around",)
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the road to ``path``, and the drive to NAME.drive.csv unless ``poses`` is None."""

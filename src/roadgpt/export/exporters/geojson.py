@@ -26,7 +26,7 @@ class GeoJson:
     name = "geojson"
     suffix = ".geojson"
     holds_junctions = True
-    lacks = ("others on the road", "the land around")
+    lacks = ("the land around",)
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes one feature collection.

@@ -103,7 +103,6 @@ class Gltf:
 
     name = "gltf"
     suffix = ".glb"
-    lacks = ("others on the road",)
     holds_junctions = True
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:

@@ -24,7 +24,6 @@ class Heightmap:
     name = "heightmap"
     suffix = ".png"
     holds_junctions = True
-    lacks = ("others on the road",)
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the picture, NAME.pgw with the place of its pixels, and NAME.json: the metres of its levels,

@@ -53,23 +53,35 @@ class OpenScenario:
     suffix = ".xosc"
     holds_junctions = True
     needs_route = True
+    holds_others = True
 
-    def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
+    def save(
+        self,
+        road: Road,
+        path: Path,
+        world: World,
+        poses: Poses | None = None,
+        placed: Others | None = None,
+    ) -> None:
         """Writes the scenario, and beside it NAME.xodr (the road) and NAME.route.json (the lanes to drive).
 
-        If ``poses`` is not None, a second scenario, NAME.drive.xosc, replays this drive."""
+        If ``poses`` is not None, a second scenario, NAME.drive.xosc, replays this drive. The others repeat
+        in both what they did in it; without a drive they are where they begin, and keep their speed."""
         stem = path.name.removesuffix(self.suffix)
         map_ = path.with_name(stem + OpenDrive.suffix)
         OpenDrive().save(road, map_, world)
-        path.write_bytes(scenario(road, world, map_.name).to_text().encode())
+        path.write_bytes(scenario(road, world, map_.name, poses, placed).to_text().encode())
         if poses is not None:
             text = replay(road, world, poses, map_.name).to_text()
             path.with_name(f"{stem}.drive{self.suffix}").write_bytes(text.encode())
 
 
-def scenario(road: Road, world: World, map_: str) -> XmlElement:
+def scenario(
+    road: Road, world: World, map_: str, poses: Poses | None = None, placed: Others | None = None
+) -> XmlElement:
     """Returns a scenario in which the car starts from rest, slows down for bends, and drives to the end of
-    the road or of the route. ``map_`` is the path of the OpenDRIVE file, relative to the scenario.
+    the road or of the route. ``map_`` is the path of the OpenDRIVE file, relative to the scenario. The others
+    and the lights do what they did in a drive, if there was one, else ``placed`` says where others begin.
 
     The waypoints of a route are its start, the middle of each lane between the first and the last, and its
     end. The scenario also ends if the car drives for too long."""
@@ -87,7 +99,14 @@ def scenario(road: Road, world: World, map_: str) -> XmlElement:
         # a route that turns back ends beside its start
         driven = XmlElement("TraveledDistanceCondition", {"value": round(road.length / 2, DECIMALS)})
         also["half of it is driven"] = _of_ego(driven)
-    root, actions, story = _frame(road, world, map_, told)
+    if poses is not None:
+        placed, end = poses.others, float(poses.time[-1] - poses.time[0])
+    others = [] if placed is None else [*_moved(placed, end if poses is not None else 0.0)]
+    if others:
+        told = f"{told[:-1]}, among {len(others)} others."
+    root, actions, story = _frame(road, world, map_, told, others)
+    if poses is not None and poses.lights:
+        _lights(root, Signals(network_of(road, world)).lights, poses)
     _start(actions, waypoints[0], 0.0)
     assigned = actions.add("PrivateAction").add("RoutingAction").add("AssignRouteAction")
     points = assigned.add("Route", {"name": "to the end", "closed": "false"})
@@ -96,6 +115,8 @@ def scenario(road: Road, world: World, map_: str) -> XmlElement:
     _event(_act(story, "drive"), "drive").add("PrivateAction").extended(_profile(plan))
     distance: dict[str, Value] = {"value": round(near, DECIMALS), "freespace": "false", "rule": "lessThan"}
     reached = XmlElement("DistanceCondition", {**distance, **measured}).extended(waypoints[-1])
+    for other in others:
+        _repeat(root, story, other)
     most = round(float(plan.time[-1]) + PATIENCE, DECIMALS)
     _stop(root, {"the end is near": _of_ego(reached), **also}, {"too long": _after(most)})
     return root
@@ -200,9 +221,10 @@ class Moved(NamedTuple):
 def _moved(others: Others, end: float) -> Iterator[Moved]:
     """Yields how each of the others moved until ``end``; who comes, goes and comes again is several, and who
     comes for less than a sample's time is left out."""
+    step = others.time[1] if len(others.time) > 1 else 1.0
     for number, (name, kind) in enumerate(zip(others.names, others.kinds, strict=True)):
         states = others.states[:, number]
-        is_there = ~np.isnan(states[:, 0]) & (others.time < end + others.time[1] - 1e-6)
+        is_there = ~np.isnan(states[:, 0]) & (others.time < end + step - 1e-6)
         edges = np.flatnonzero(np.diff(np.r_[False, is_there, False]))
         for again, (first, last) in enumerate(edges.reshape(-1, 2)):
             said = name if again == 0 else f"{name}, {again + 1}"
@@ -216,7 +238,7 @@ def _moved(others: Others, end: float) -> Iterator[Moved]:
 
 def _first_speed(time: Array, states: Array) -> float:
     if len(time) < 2:
-        return 0.0
+        return float(states[0, 4])
     dx, dy = (states[1, :2] - states[0, :2]) / (time[1] - time[0])
     return float(dx * np.cos(states[0, 3]) + dy * np.sin(states[0, 3]))
 
