@@ -62,7 +62,7 @@ def test_an_option_wins_over_the_words_and_this_is_said() -> None:
         "run", "--plan", f"{PLAN} && dense", "--scene", "light", "--no-drive", "--no-plot", "--out", "out"
     )
     assert result.exit_code == 0, result.output
-    assert "note: the words have a scene, but --scene 'light' is set and used" in result.output
+    assert "but the scene 'light' is set and used" in result.output
     assert read_run(Path("out/runs/0001")).world.scene == read_scene("light")
 
 

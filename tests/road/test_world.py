@@ -66,14 +66,29 @@ def test_a_scene_is_one_text_of_a_file_and_absent_without_one() -> None:
         World.model_validate({"scene": "truck ahead: jump"})
 
 
-def test_a_scene_of_words_counts_unless_the_world_has_one_and_its_surface_sets_the_friction() -> None:
-    brief = read_plan("turn | beside(wet) && medium; ice")
+@pytest.mark.parametrize(
+    ("given", "stands", "friction"),
+    [
+        ("", "", 0.6),  # an empty scene takes that of the words away
+        ("light", "light; night; ice", 0.1),
+        ("snow", "medium; night; snow", 0.35),
+        ("rain 5", "medium; rain 5; night; ice", 0.1),
+        ("car ahead; low_sun", "car ahead; medium; low_sun; ice", 0.1),
+    ],
+)
+def test_what_a_scene_of_words_says_stands_unless_that_of_the_world_says_it(
+    given: str, stands: str, friction: float
+) -> None:
+    brief = read_plan("turn | beside(wet) && medium; night; ice")
     assert World().in_scene_of(brief).scene == brief.scene
     assert World().in_scene_of(brief).on_surface_of(brief).site.friction == 0.1
-    for given in ("", "light", "snow"):
-        kept = World().changed(scene=given).in_scene_of(brief)
-        assert kept.scene == read_scene(given)
-        assert kept.on_surface_of(brief).site.friction == (0.35 if given == "snow" else 0.6)
+    kept = World().changed(scene=given).in_scene_of(brief)
+    assert kept.scene == read_scene(stands)
+    assert kept.on_surface_of(brief).site.friction == friction
+    assert kept.in_scene_of(brief) == kept
+
+
+def test_a_scene_without_words_sets_the_friction() -> None:
     assert World().changed(scene="rain").on_surface_of(None).site.friction == 0.6
     assert World().changed(scene="rain", friction=1.0).on_surface_of(None).site.friction == 1.0
 

@@ -24,12 +24,13 @@ NETWORKS = (*ON_ROUTES, "loop")
 BESIDE = frozenset({*NOT_BUILT, *SAID_OTHERWISE, *SURFACES})
 
 
-def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str]:
+def remarks(names: Sequence[str], friction: float | None = None, others: Sequence[str] = ()) -> Iterator[str]:
     """Yields what the user should know about the named things, as sentences without full stops.
 
     Args:
         names: names from ``Brief.beside``.
-        friction: friction coefficient that the user has set; with None, a surface in ``names`` sets it."""
+        friction: friction coefficient of the road; with None, a surface in ``names`` sets it.
+        others: what sets the friction in the scene of the drive."""
     for name in names:
         if name in ON_ROUTES:
             yield (
@@ -42,7 +43,7 @@ def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str
             yield f"{NOT_BUILT[name]} is not built yet; the road is made without it"
         elif name not in SURFACES:
             yield SAID_OTHERWISE[name]
-    if said := surface_remark(names, friction):
+    if said := surface_remark(names, friction, others):
         yield said
 
 
@@ -59,20 +60,28 @@ def networks_in(names: Iterable[str]) -> str:
     return f"it is not clear where {said} should be; say it in driving order, such as '{example}'"
 
 
+def slipperiest(names: Iterable[str]) -> str | None:
+    """Returns the slipperiest surface among the names; None if there is none."""
+    named = [each for each in names if each in SURFACES]
+    return min(named, key=lambda each: SURFACES[each].friction, default=None)
+
+
 def friction_of(names: Iterable[str]) -> float | None:
     """Returns the friction coefficient of the slipperiest surface among the names; None if there is none."""
-    return min((SURFACES[name].friction for name in names if name in SURFACES), default=None)
+    return None if (name := slipperiest(names)) is None else SURFACES[name].friction
 
 
-def surface_remark(names: Sequence[str], friction: float | None = None) -> str:
+def surface_remark(names: Sequence[str], friction: float | None = None, others: Sequence[str] = ()) -> str:
     """Returns a sentence on whether the named surface, such as ice, sets the friction; empty if no surface is
     named. The arguments are those of ``remarks``."""
     own = friction_of(names)
     if own is None:
         return ""
-    *others, last = (f"'{name}'" for name in SURFACES if name in names)
-    said = f"{', '.join(others)} and {last}" if others else last
+    *more, last = (f"'{name}'" for name in SURFACES if name in names)
+    said = f"{', '.join(more)} and {last}" if more else last
+    if friction not in (None, own) and friction == friction_of(others):
+        return f"the words say {said}, but the given scene says '{others[0]}': friction is {friction:g}"
     if friction not in (None, own):
         return f"the words say {said}, but friction {friction:g} is set; the surface in the words is not used"
-    which = "the lowest friction counts, " if others else "friction is "
+    which = "the lowest friction counts, " if more else "friction is "
     return f"the words say {said}: {which}{own:g}; --friction gives another"

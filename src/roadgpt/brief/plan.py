@@ -607,8 +607,8 @@ def scene_fields(text: str) -> dict[str, object]:
             raise BriefError(
                 f"a scene has no '{part[:40]}'; its parts, divided by ;, begin with one of {', '.join(known)}"
             )
-    of_all = {"actors": tuple(actors), "slippery": tuple(patches), "landscape": tuple(lands)}
-    return {**fields, "parked": tuple(sorted(rows)), **of_all}
+    several = {"actors": actors, "slippery": patches, "landscape": lands, "parked": sorted(rows)}
+    return fields | {name: tuple(each) for name, each in several.items() if each}
 
 
 def _read_role(text: str) -> Role:

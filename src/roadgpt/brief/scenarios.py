@@ -92,12 +92,14 @@ class Scenario(NamedTuple):
         own = mirrored_scene(own) if left_hand else own
         told, added = (each.model_dump(exclude_defaults=True) for each in (own, other))
         for name, value in added.items():
-            if told.get(name, value) != value:
+            if told.get(name, value) != value or (name == "light" in self.given and name not in told):
                 raise UsageError(
                     f"the scenario '{self}' and the other scene both say the {name} of the scene, and "
                     "contradict each other; leave one of them out"
                 )
-        return Scene.model_validate(told | added)
+        # who is there, and a light that was given, are said, even if that is nobody and the day's
+        said = {"actors": ()} | ({"light": None} if "light" in self.given else {})
+        return Scene.model_validate(said | told | added)
 
     def points(self, grid: Grid, with_road: bool) -> "Iterator[Scenario]":
         """Yields the scenario itself, or with the values of all points of its standard grid, but for those

@@ -230,7 +230,7 @@ def _run_lines(run: Run, again: Sequence[str]) -> Iterator[str]:
 
         yield f"  brief     {sentence(run.brief)}"
         site = run.world.site
-        for remark in remarks(run.brief, site.map_size, site.friction):
+        for remark in remarks(run.brief, site.map_size, site.friction, run.world.scene.surfaces):
             yield f"  note      {remark}"
     if run.road is not None:
         yield f"  road      {_road_line(run)}"

@@ -51,7 +51,9 @@ def world_for(brief: Brief | None, world: World) -> World:
 def world_remarks(brief: Brief, usual: World, found: World) -> tuple[str, ...]:
     """Returns sentences that say how a Brief affects a World: its friction, its lanes and its map. ``usual``
     is the World that was given, and ``found`` the one that ``world_for`` returned."""
-    surface = surface_remark((*brief.beside, *brief.scene.surfaces), found.site.friction)
+    surface = surface_remark(
+        (*brief.beside, *brief.scene.surfaces), found.site.friction, found.scene.surfaces
+    )
     said = (surface, *lane_remarks(brief, found), speed_remark(brief, found), scene_remark(brief, found))
     said += (need_remark(brief, found),)
     said += (map_remark(brief, usual, found),)
@@ -83,12 +85,14 @@ def scene_remark(brief: Brief, found: World) -> str:
     meant = World().in_scene_of(brief).scene
     if meant == found.scene and (brief.scene != Scene() or meant == Scene()):
         return ""  # the sentence of the words has it
-    if meant in (Scene(), found.scene):
+    told, own = (each.model_dump(exclude_defaults=True) for each in (meant, found.scene))
+    if not (lost := [name for name in told if told[name] != own.get(name)]):
         friction = f"friction {found.site.friction:g}" if found.scene.surfaces else ""
         parts = (scene_text(found.scene), friction, land_remark(found.scene))
         is_land = found.scene.on_the_road == Scene()
         return f"{'the land' if is_land else 'on the road'}: {'; '.join(filter(None, parts))}"
-    return f"the words have a scene, but --scene '{scene_plan(found.scene)}' is set and used"
+    of_words = scene_text(Scene.model_validate({name: told[name] for name in lost}))
+    return f"the words say {of_words}, but the scene '{scene_plan(found.scene)}' is set and used"
 
 
 def speed_remark(brief: Brief, found: World) -> str:

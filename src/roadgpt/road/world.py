@@ -26,7 +26,7 @@ from pydantic import (
 )
 
 from roadgpt.brief.amount import Amount, Frozen
-from roadgpt.brief.beside import friction_of
+from roadgpt.brief.beside import friction_of, slipperiest
 from roadgpt.brief.model import CentreLine
 from roadgpt.brief.plan import read_scene, scene_plan
 from roadgpt.brief.scene import LAND_KINDS, Scene, with_lands
@@ -422,15 +422,21 @@ class World(BaseModel):
 
     def in_scene_of(self, brief: "Brief | None") -> "World":
         """Returns the World with the scene of a Brief, with the landscape that its words name, and with
-        mountains around a mountain road. A scene, or land, that was given to this World is kept, even if it
-        is empty."""
-        if brief is None:
+        mountains around a mountain road. Where a scene was given to this World, what it says is kept, and
+        what it leaves open is that of the Brief; an empty one takes all of that away."""
+        is_given = "scene" in self.model_fields_set
+        if brief is None or (is_given and self.scene == Scene()):
             return self
         scene = with_lands(brief.scene, brief.beside)
         if brief.surroundings == "mountain" and scene.land is None:
             scene = scene.model_copy(update={"land": "mountain"})
-        is_given = scene == Scene() or "scene" in self.model_fields_set
-        return self if is_given else self.changed(scene=scene)
+        if scene.surface or is_given:
+            surface = slipperiest((*brief.beside, *([scene.surface] if scene.surface else [])))
+            scene = scene.model_copy(update={"surface": surface})
+        said = {name: getattr(scene, name) for name in scene.model_dump(exclude_defaults=True)}
+        if is_given:
+            said = {name: each for name, each in said.items() if name not in self.scene.model_fields_set}
+        return self.changed(scene=self.scene.model_copy(update=said)) if said else self
 
     def in_weather_of(self, seed: int) -> "World":
         """Returns the World with the fog and rain that a drive with this seed draws from their ranges."""
@@ -440,7 +446,8 @@ class World(BaseModel):
     def on_surface_of(self, brief: "Brief | None") -> "World":
         """Returns the World with the friction of the surface that its scene or a Brief names, such as a wet
         road. A friction that was given to this World is kept, even if it equals the default."""
-        friction = friction_of((*(brief.beside if brief else ()), *self.scene.surfaces))
+        of_words = brief.beside if brief and not self.scene.surface else ()
+        friction = friction_of((*of_words, *self.scene.surfaces))
         if friction is None or "friction" in self.site.model_fields_set:
             return self
         return self.changed(friction=friction)

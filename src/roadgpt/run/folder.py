@@ -180,7 +180,7 @@ def _files(run: Run) -> list[tuple[str, bytes]]:
 def _card(run: Run) -> dict[str, Any]:
     asked = {"designing": run.designing, "spent": run.spent}
     site = run.world.site
-    noted = remarks(run.brief, site.map_size, site.friction) if run.brief else ()
+    noted = remarks(run.brief, site.map_size, site.friction, run.world.scene.surfaces) if run.brief else ()
     return {
         "format": FORMAT,
         "index": run.index,

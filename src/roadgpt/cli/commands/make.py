@@ -159,7 +159,7 @@ def all_remarks(brief: Brief, world: "World", given: "World") -> tuple[str, ...]
     """Returns sentences on what is not built, or not as described; ``given`` is the World of the user."""
     from roadgpt.design.room import world_remarks
 
-    of_words = remarks(brief, world.site.map_size, world.site.friction)
+    of_words = remarks(brief, world.site.map_size, world.site.friction, world.scene.surfaces)
     return tuple(dict.fromkeys((*of_words, *world_remarks(brief, given, world))))  # both tell the surface
 
 
