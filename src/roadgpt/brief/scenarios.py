@@ -98,8 +98,8 @@ class Scenario(NamedTuple):
                     "contradict each other; leave one of them out"
                 )
         # who is there, and a light that was given, are said, even if that is nobody and the day's
-        said = {"actors": ()} | ({"light": None} if "light" in self.given else {})
-        return Scene.model_validate(said | told | added)
+        stated: dict[str, Any] = {"actors": (), **({"light": None} if "light" in self.given else {})}
+        return Scene.model_validate(stated | told | added)
 
     def points(self, grid: Grid, with_road: bool) -> "Iterator[Scenario]":
         """Yields the scenario itself, or with the values of all points of its standard grid, but for those
