@@ -52,6 +52,8 @@ SEVERAL = {"bus": "buses", "child": "children", "cones": "cones"}
 """The plurals that are not made with an s."""
 ALONG = ("ahead", "behind", "lane", "far", "oncoming")
 LEAVES = ("cut_out", "change_lane")
+HEAD_ON: tuple[What, ...] = ("drift", "wrong_way", "overtake")
+"""What leads who comes towards the tested car into its lane."""
 ON_ITS_WAY: tuple[What, ...] = ("merge", "turn_in", "turn_across", "cross", "run_light", "run_sign")
 """What somebody does on a way of its own, on which it is from the begin on."""
 MOST_MORE = 3

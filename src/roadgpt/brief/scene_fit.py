@@ -15,7 +15,7 @@ from roadgpt.brief.model import Brief, Clause, span
 from roadgpt.brief.normal import STRAIGHT
 from roadgpt.brief.outline import outline
 from roadgpt.brief.ranges import Range
-from roadgpt.brief.scene import ACROSS, LEAVES, MOST_MORE, MOVING, USUAL_SPEEDS, Action, Role, Scene
+from roadgpt.brief.scene import ACROSS, HEAD_ON, LEAVES, MOST_MORE, MOVING, USUAL_SPEEDS, Action, Role, Scene
 from roadgpt.brief.scene_check import check_scene
 from roadgpt.brief.words import MOTORWAY_RADIUS
 from roadgpt.errors import BriefError
@@ -47,7 +47,8 @@ def fitted(brief: Brief, scene: Scene, limit: float, map_size: float | None = No
     before, stop = _until_stop(scene, speed, brief), speed**2 / 2 / STOPS
     lanes = scene.lanes_needed(brief.left_hand)
     if not brief.stretches:
-        return _suited(brief, scene, lanes, speed, before, before + stop, map_size or brief.map_size)
+        side, far = map_size or brief.map_size, _until_met(scene, speed)
+        return _suited(brief, scene, lanes, speed, before, before + stop, side, far)
     places = [place for place in brief.junctions if place.kind not in (*LANE_KINDS, *RAMPS)]
     at_junction = bool(scene.turn) or any(role.where in ("junction", "roundabout") for role in scene.actors)
     first, *others = brief.stretches
@@ -82,6 +83,18 @@ def _until_stop(scene: Scene, speed: float, brief: Brief) -> float:
     named += [role.gap for role in roles if role.where == "oncoming"]
     least = FOR_FLOW if scene.has_flow else 0.0
     return max(max(seconds) * speed, *map(_most, named), least) + sum(map(_row, roles)) + SPARE
+
+
+def _until_met(scene: Scene, speed: float) -> float:
+    """Returns from how far somebody comes towards the tested car who gets into its lane, in metres: as far as
+    they drive until the car has rolled and that has happened. A shorter road will do."""
+    found = [0.0]
+    for role in scene.actors:
+        whats = [each.what for each in role.actions[:1]]
+        if role.where == "oncoming" and whats and whats[0] in HEAD_ON and not role.gap and not role.station:
+            own = _most(role.speed) / KMH if role.speed else speed
+            found.append((speed + own) * (ROLLS + 1.0 + pi / 2 * LANE) + SPARE)  # sideways with 1 m/s
+    return max(found)
 
 
 def _row(role: Role) -> float:
@@ -146,14 +159,17 @@ def _with_way(place: JunctionClause, scene: Scene) -> JunctionClause:
 
 def _suited(
     road: Brief, scene: Scene, lanes: int, speed: float, straight: float, metres: float,
-    map_size: float | None = None,
+    map_size: float | None = None, far: float = 0.0,
 ) -> Brief:  # fmt: skip
-    """Asks of a road for lanes, a length in metres, and bends that are wide, or begin after a straight."""
+    """Asks of a road for lanes, a length in metres, if there is room of ``far`` metres, and bends that are
+    wide, or begin after a straight."""
     easy = _with_radius(road, _easy_radius(road, scene, speed))
-    if easy != road:
-        easy = _long_enough(easy, scene, lanes, speed, straight, metres)
-        if is_possible(easy, map_size, 0.0):
-            return easy
+    far = far if metres < far < _length(road).hi - 10.0 else metres
+    for each, length in ((easy, far), (easy, metres), (road, far)):
+        if (each, length) != (road, metres):
+            asked = _long_enough(each, scene, lanes, speed, straight, length)
+            if is_possible(asked, map_size, 0.0):
+                return asked
     return _long_enough(road, scene, lanes, speed, straight, metres)
 
 

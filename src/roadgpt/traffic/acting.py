@@ -17,6 +17,7 @@ from roadgpt.brief.scene import (
     ALONG,
     CUES,
     DOINGS,
+    HEAD_ON,
     MOVING,
     NUMBERS,
     ON_ITS_WAY,
@@ -28,6 +29,7 @@ from roadgpt.brief.scene import (
     Where,
 )
 from roadgpt.errors import SceneError
+from roadgpt.road.road import GOAL
 from roadgpt.traffic.actor import SIZES, STEP
 from roadgpt.traffic.following import HARDEST, JAM, idm, time_over
 from roadgpt.traffic.places import offset_of, stretch_of
@@ -70,8 +72,6 @@ PULL: Mapping[str, float] = {
 PATH, RUNS, RUNNING_PATH = 1.0, 6.0 / 3.6, 1.5
 """Euro NCAP's persons reach their speed within 1 m (CPNA), or 1.5 m if they run (CPFA)."""
 QUICKEST = 10.0  # m/s^2, with which a person starts at most
-HEAD_ON: tuple[What, ...] = ("drift", "wrong_way", "overtake")
-"""What leads who comes towards the tested car into its lane."""
 CROSSINGS = ("crossing", "crosswalk")
 IN_LANE = ("ahead", "behind", "oncoming")
 PLACES = ("gap", "headway", "lead", "station")
@@ -235,6 +235,9 @@ class Act:
         turns_off = self.is_along and "turn_off" in whats
         is_near = self.where in ("ahead", "behind") and not {"gap", "headway", "lead"}.isdisjoint(self.n)
         self.rolls = SETTLED if is_near else ROLL
+        left = (path.length - GOAL - car.s) / max(car.v, 1.0)
+        if left < self.rolls + SETTLED:  # the drive is over before
+            self.rolls = max(left, 0.0) / 2
         self.is_placed = bool(role.at) or not {*PLACES}.isdisjoint(self.n)
         """Whether the scene says where it is at first."""
         if self.is_along:
@@ -276,6 +279,7 @@ class Act:
     def put(self, s: float) -> None:
         """Puts it at a station of its way, with a speed that is possible there."""
         self.s = s
+        self.meeting = self._head_on() if self.is_along and self.way is self.path else self.meeting
         self.goal = self.v = min(self.v, self.way.bend(s, self.t, self.forward)[1])
 
     def _deed(self, action: Action, n: dict[str, float]) -> Deed:
@@ -381,7 +385,7 @@ class Act:
             found = found._replace(own=over + self.v * self.cue["ttc"])
         found = found._replace(own=found.own - self.copy * (length + STANDS + BEHIND * self.v))
         eta = (found.car - car.s - car.length / 2) / max(car.v, 1.0)
-        return found, found.own - self.v * eta
+        return found, found.own - self.way.before(found.own, self.v, eta)
 
     def _head_on(self) -> Meeting | None:
         """Returns where somebody who comes towards the tested car in its lane meets it."""
@@ -423,7 +427,7 @@ class Act:
         return n["headway"] * (self.v if self.where == "behind" else self.car.v)
 
     def _gap_of_cue(self) -> float:
-        """Returns the gap at first of which nothing is said: so that its first action begins after ROLL."""
+        """Returns the gap at first of which nothing is said: that its first action begins after ``rolls``."""
         car, cue = self.car, self.cue
         away = self.forward * self.v - car.v
         rate = -away if self.where == "behind" else away
@@ -444,12 +448,12 @@ class Act:
         elif self.where == "behind":
             return BEHIND * self.v
         elif self.where in ("lane", "far"):
-            return 5.0 - self.half + slower * ROLL
+            return 5.0 - self.half + slower * self.rolls
         elif self.forward < 0:
             at = -rate * LAST
         else:
-            return max(HEADWAY * car.v, slower * ROLL + slower**2 / 2 / EASY)
-        return at - rate * ROLL
+            return max(HEADWAY * car.v, slower * self.rolls + slower**2 / 2 / EASY)
+        return at - rate * self.rolls
 
     def _across(self) -> float:
         """Returns where in the tested car's lane it is, or comes to: see ``overlap`` and ``impact``."""
@@ -579,8 +583,15 @@ class Act:
             self._show()
 
     def _show(self) -> None:
-        if self.begun and self.state() is not None:
-            self.shown.add(self.begun - 1)
+        """Notes that it does what it does, if it is there; who meets the tested car where the scene leaves
+        open when, does so on its path and before the car has passed."""
+        if not self.begun or self.state() is None:
+            return
+        if self.meeting and not self.is_along and self.deeds[self.begun - 1].is_open:
+            left = self.meeting.own - self.s - self.size.length / 2
+            if left > self.car.width or self.car.s - self.car.length / 2 > self.meeting.car:
+                return
+        self.shown.add(self.begun - 1)
 
     def _tell(self, word: str) -> None:
         if not self.copy:
@@ -610,7 +621,9 @@ class Act:
         """Returns how far it is to be from its meeting so many seconds before it."""
         n = self.cue
         if not {"to", "accel"} & {*n} or {"time", "gap", "headway"} & {*n}:
-            return self.cruise * eta
+            assert self.meeting is not None
+            is_along = self.way is self.path
+            return self.cruise * eta if is_along else self.way.before(self.meeting.own, self.cruise, eta)
         last, goal = n.get("ttc", LAST), n.get("to", self.cruise)
         return self.cruise * (eta - last) + reach(last, self.cruise, goal, abs(n.get("accel", CHANGE)))
 

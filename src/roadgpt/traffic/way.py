@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 SPACING = 0.5  # m between the points of a way
 GRIP, EASE = 7.0, 3.0  # m/s^2: the most sideways in a bend, and with what actors slow down before it
+GAINS = 2.0  # m/s^2, with which they gain speed behind it
 SMOOTHED = 9  # points that a curvature is averaged over
 LEAST_STRETCH = 0.2  # lower bound of the metres beside a way per metre of it, on the inside of a bend
 
@@ -77,6 +78,10 @@ class Way:
         return rows
 
     @cached_property
+    def _fastest(self) -> FloatArray:
+        return np.sqrt([row[5] for row in self._rows])
+
+    @cached_property
     def _places(self) -> list[float]:
         places: list[float] = self.stations.tolist()
         return places
@@ -95,6 +100,17 @@ class Way:
         beyond = s - min(max(s, 0.0), self.length)
         cos, sin = math.cos(heading), math.sin(heading)
         return x + beyond * cos - t * sin, y + beyond * sin + t * cos, z, heading
+
+    def before(self, end: float, speed: float, seconds: float) -> float:
+        """Returns how many metres before a station somebody is so many seconds earlier who drives along the
+        way with this speed, or as fast as its bends allow."""
+        if self._fastest[self.stations <= end].min(initial=math.inf) >= speed or seconds <= 0 or speed <= 0:
+            return speed * seconds
+        s = np.linspace(0.0, end, int(max(end, SPACING) / SPACING) + 2)
+        square = np.minimum(np.interp(s, self.stations, self._fastest), speed) ** 2
+        pace = np.sqrt(np.minimum.accumulate(square - 2 * GAINS * s) + 2 * GAINS * s)
+        times = np.concatenate([[0.0], np.cumsum((2 * np.diff(s) / (pace[1:] + pace[:-1]))[::-1])])
+        return float(np.interp(seconds, times, end - s[::-1])) + speed * max(seconds - float(times[-1]), 0.0)
 
     def bend(self, s: float, t: float, forward: int) -> tuple[float, float]:
         """Returns how many metres somebody drives ``t`` metres to the left of the way per metre of it, and

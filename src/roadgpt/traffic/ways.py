@@ -5,7 +5,7 @@ import math
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -34,8 +34,9 @@ REACH = 300.0  # m of a way before and behind the lanes for which it was chosen,
 OPPOSITE = math.radians(40.0)  # an arm that is farther from straight ahead is on the left or on the right
 MERGED = 0.5  # m between the middles of two ways that have become one
 AROUND = 30.0  # m of the tested car's path before and behind a junction on which somebody may meet it
+STRAIGHT = math.radians(60.0)  # within which who crosses goes straight on
 TURNS: Mapping[What, tuple[float, float, tuple[bool, ...]]] = {
-    "cross": (0.0, math.radians(60.0), (False, True)),
+    "cross": (0.0, STRAIGHT, (False, True)),
     "run_light": (0.0, math.pi, (False, True)),
     "run_sign": (0.0, math.pi, (False, True)),
     "turn_across": (OPPOSITE, math.pi, (False,)),
@@ -226,7 +227,13 @@ def _through_junction(around: _Around) -> Iterator[Way | None]:
                 arms.append((sides.index(side), abs(turn), lanes))
         for _, _, lanes in sorted(arms):
             turns = [each for lane in lanes for each in around.turns(passage, lane)]
-            for by, legs in sorted(turns, key=lambda each: (abs(each[0]), each[1])):
+
+            def best(each: tuple[float, tuple[Leg, ...]]) -> tuple[Any, ...]:
+                """Straight on, else across the tested car's path, else into it."""
+                by, legs = each
+                return abs(by) > STRAIGHT and legs[-1] in route.legs, abs(by), legs
+
+            for by, legs in sorted(turns, key=best):
                 is_fit = least <= abs(by) <= most and (legs[-1] in route.legs) in kinds
                 if what == "run_sign":
                     is_fit &= bool({*around.lanes.gives_way_to(legs[1])} & {*route.legs})

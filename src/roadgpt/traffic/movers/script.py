@@ -6,9 +6,9 @@ from collections import Counter
 
 import numpy as np
 
-from roadgpt.brief.scene import DOINGS, LEAVES, MOST_MORE
+from roadgpt.brief.scene import DOINGS, HEAD_ON, LEAVES, MOST_MORE
 from roadgpt.road.road import START
-from roadgpt.traffic.acting import BEHIND, STANDS, Act, Car
+from roadgpt.traffic.acting import BEHIND, ONCOMING, STANDS, Act, Car
 from roadgpt.traffic.actor import HEADING, SIZES, SPEED, STILL, Actor, FloatArray, TestedCar, corners
 from roadgpt.traffic.places import parked_rows
 from roadgpt.traffic.traffic import NEVER, Stage
@@ -81,6 +81,12 @@ class Script:
             assert last is not None
             if act.v > 0 and act.first not in LEAVES and not act.is_placed and act.s < last.s:
                 act.put(last.s + (last.size.length + act.size.length) / 2 + BEHIND * act.v)
+        onto = [act for act in acts if act.forward < 0 and act.is_along and not act.is_placed]
+        late = [act.s + act.size.length / 2 - self._way.length for act in onto if act.first in HEAD_ON]
+        spare = min((act.s - act.car.s - act.half - ONCOMING for act in onto), default=0.0)
+        nearer = min(max(late, default=0.0), spare)
+        for act in onto if nearer > 0 else ():  # so that what they begin happens on a short road, too
+            act.put(act.s - nearer)
         for act in acts:
             act.check()
 
