@@ -1,6 +1,7 @@
 """``roadgpt import`` of whole maps: what is written is viewed, checked, driven and searched on."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -122,3 +123,35 @@ def test_a_named_route_and_one_between_points_are_the_same(town: Path, tmp_path:
     route = read_road(named)
     assert isinstance(route, Route)
     assert route.legs == ROUTE.legs
+
+
+@pytest.mark.parametrize("kept", [0, 2], ids=["nowhere", "on two lanes"])
+def test_a_speed_limit_that_the_file_lacks_is_not_written_as_its_own(
+    town: Path, tmp_path: Path, kept: int
+) -> None:
+    """The file has no speed limit, or on two lanes only; an option gives all lanes one."""
+    path, out = tmp_path / "bare.xodr", tmp_path / "out"
+    text = re.sub(r"\s*<speed max[^>]*/>", "", town.read_text())
+    parts = re.split(r"(?=<speed sOffset)", text)
+    path.write_text(
+        "".join([*parts[: 1 + kept], *(re.sub(r"^<speed[^>]*/>", "", part) for part in parts[1 + kept :])])
+    )
+    files = [str(path)]
+    for name, route in (("map", ()), ("route", ("--random-routes", "1"))):
+        files.append(str(tmp_path / f"{name}.json"))
+        told = invoke("import", str(path), *route, "--out", files[-1])
+        assert ("it states no speed limit; it is driven at 70 km/h at most" in told.stderr) == (not kept)
+    for file in files:
+        done = invoke("export", file, "--to", "opendrive,lanelet2,commonroad,geojson", "--out", str(out))
+        assert done.exit_code == 0, done.stderr
+        name = Path(file).stem
+        assert (out / f"{name}.xodr").read_text().count("<speed ") == kept
+        for other in (".osm", ".cr.xml", ".geojson"):
+            written = (out / f"{name}{other}").read_text()
+            assert not re.search("speed_limit|>274<|speed_kmh", written)
+        invoke("export", file, "--to", "opendrive", "--speed-limit", "30", "--out", str(out))
+        lanes = (out / f"{name}.xodr").read_text().count('type="driving"')
+        assert (out / f"{name}.xodr").read_text().count("<speed sOffset") == lanes
+    whole = town.read_text().count("<speed sOffset")
+    invoke("export", str(town), "--to", "opendrive", "--out", str(out))
+    assert (out / "town.xodr").read_text().count("<speed sOffset") == whole > 0

@@ -75,6 +75,7 @@ FIELDS = {
     "oob_tolerance": "limits",
     "lane_departure": "limits",
     "avoidable": "limits",
+    "limit_stated": "limits",
     "min_radius": "limits",
     "max_grade": "limits",
     "z_floor": "site",
@@ -305,6 +306,8 @@ class Limits(BaseModel):
         json_schema_extra=DRIVE | {"unit": KMH, "key": "speed_limit_kmh", "within": SPEEDS},
     )  # fmt: skip
     """Speed limit in m/s. The default is the competition's 70 km/h."""
+    limit_stated: bool = True
+    """Whether exported lanes without a limit of their own have this one; False where a file has none."""
     oob_tolerance: float = Field(
         oracle_limits()["oob_tolerance"], gt=0, le=1,
         description="Share of the car that may be outside its lane. [default: that of --oracle]",
@@ -397,7 +400,7 @@ class World(BaseModel):
 
     @model_serializer
     def _to_file(self) -> dict[str, Any]:
-        usual = OWN | {"scene": "", "ground": "", "avoidable": None}
+        usual = OWN | {"scene": "", "ground": "", "avoidable": None, "limit_stated": True}
         values = self.values().items()
         return {KEYS.get(name, name): value for name, value in values if usual.get(name, self) != value}
 

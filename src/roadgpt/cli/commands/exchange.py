@@ -432,6 +432,11 @@ def _write(
     too_short = plugins.find("rules", "too_short")
     is_only = only_road(road, own) is not None
     found = too_short(network_of(road, own), road, None, own) if is_only else ()
+    if file.suffix.lower() == ".xodr" and "speed_limit" not in world:
+        usual = own.limits.speed_limit * 3.6
+        told += (
+            f"it states no speed limit; it is driven at {usual:g} km/h at most, or as --speed-limit says",
+        )
     road_from_json(road.to_json())  # so that nothing is written that cannot be read
     for remark in () if quiet else (*source.remarks, *told, *(finding.sentence for finding in found)):
         if remark not in heard:

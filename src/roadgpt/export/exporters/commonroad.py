@@ -176,11 +176,13 @@ def document(road: Road, world: World) -> XmlElement:
     root.add("scenarioTags").add("rural")
     junctions = Crossings(network_of(road, world), lanelets, sign + 2)
     for each in lanelets:
-        root.extended(_lanelet(each, sign, junctions))
+        root.extended(_lanelet(each, sign if world.limits.limit_stated else None, junctions))
     edges = world.profile_of(road).edges(0.0)
     side = edges.left if world.profile_of(road).left_hand else edges.right
     limit = {"trafficSignID": SPEED_LIMIT, "additionalValue": number(round(world.limits.speed_limit, 6))}
-    root.extended(_sign(sign, road.at(0.0, side)[:2].tolist(), "true", **limit), *junctions.elements())
+    if world.limits.limit_stated:
+        root.extended(_sign(sign, road.at(0.0, side)[:2].tolist(), "true", **limit))
+    root.extended(*junctions.elements())
     if not road.has_way:
         return root
     last = legs_of(road, world)[-1]
@@ -188,7 +190,7 @@ def document(road: Road, world: World) -> XmlElement:
     return root.extended(_problem(sign + 1, road, world, goal))
 
 
-def _lanelet(lanelet: Lanelet, sign: int, junctions: Crossings) -> XmlElement:
+def _lanelet(lanelet: Lanelet, sign: int | None, junctions: Crossings) -> XmlElement:
     out = XmlElement("lanelet", {"id": lanelet.id})
     for name, bound in (("leftBound", lanelet.left), ("rightBound", lanelet.right)):
         element = out.add(name)
@@ -203,7 +205,8 @@ def _lanelet(lanelet: Lanelet, sign: int, junctions: Crossings) -> XmlElement:
             id_, is_same = neighbour
             out.add(name, {"ref": id_, "drivingDir": "same" if is_same else "opposite"})
     out.extended(*junctions.line_of(lanelet.id)).with_texts(laneletType="country", userOneWay="vehicle")
-    out.add("trafficSignRef", {"ref": sign})
+    if sign is not None:
+        out.add("trafficSignRef", {"ref": sign})
     return out.extended(*junctions.references(lanelet.id))
 
 

@@ -35,7 +35,8 @@ class GeoJson:
         junctions, the paved area of the whole network takes the place of the lanes. A map without a route has
         no centre line."""
         s = road.sample(STEP).s
-        about = {"length_m": road.length, "speed_kmh": world.limits.speed_limit * 3.6}
+        about = {"length_m": road.length}
+        about |= {"speed_kmh": world.limits.speed_limit * 3.6} if world.limits.limit_stated else {}
         is_only = only_road(road, world) is not None
         beside = _lanes(road, world, s) if is_only else _paved(network_of(road, world), world)
         lines = [_line("centre line", road.at(s), about)] if road.has_way else []

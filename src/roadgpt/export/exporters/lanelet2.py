@@ -58,7 +58,8 @@ def document(road: Road, world: World) -> XmlElement:
     """Returns the XML document of the map.
 
     Bounds may point against the direction of traffic; programs that read Lanelet2 maps detect this."""
-    map_ = _MapBuilder(f"{world.limits.speed_limit * 3.6:.6g} km/h")
+    limits = world.limits
+    map_ = _MapBuilder(f"{limits.speed_limit * 3.6:.6g} km/h" if limits.limit_stated else "")
     lanelets = sorted(lanelets_of(road, world), key=lambda each: (each.road, each.section, each.lane))
     ways: dict[LaneletBound, int] = {}
     for _, section in groupby(lanelets, key=lambda each: (each.road, each.section)):
@@ -134,7 +135,8 @@ class _MapBuilder:
         for role, way in (("left", left), ("right", right)):
             lanelet.add("member", {"type": "way", "ref": way, "role": role})
         kind = {"type": "lanelet", "subtype": "road", "location": "nonurban", "region": "de"}
-        rules = {"one_way": "yes", "participant:vehicle": "yes", "speed_limit": self._limit}
+        rules = {"one_way": "yes", "participant:vehicle": "yes"}
+        rules |= {"speed_limit": self._limit} if self._limit else {}
         self.lanelets[id_] = _tagged(lanelet, kind | rules)
 
     def signal(self, network: Network, junction: Junction, arm: Arm, incoming: list[int]) -> None:

@@ -32,15 +32,14 @@ class RoadParts:
     _surfaces: dict[tuple[float | None, float | None], tuple[XmlElement, ...]] = field(default_factory=dict)
 
     @property
-    def _speed_limit(self) -> dict[str, Value]:
-        return {"max": round(self.world.limits.speed_limit * 3.6, 6), "unit": "km/h"}
+    def _speed_limit(self) -> float | None:
+        return self.world.limits.speed_limit if self.world.limits.limit_stated else None
 
     @cached_property
     def road_type(self) -> XmlElement:
         """The element ``type`` with the speed limit."""
         made = XmlElement("type", {"s": 0, "type": "rural"}, is_shared=True)
-        made.add("speed", self._speed_limit)
-        return made
+        return made.extended(*_speed(self._speed_limit))
 
     def heights(self, road: Road) -> XmlElement:
         """Returns the element ``elevationProfile`` of a road. Level roads of one height share one element."""
@@ -99,14 +98,18 @@ class RoadParts:
         if (limit, friction) not in self._surfaces:
             own = self.world.site.friction if friction is None else friction
             surface: dict[str, Value] = {"sOffset": 0, "friction": own, "surface": "asphalt", "roughness": 0}
-            speed = dict(self._speed_limit)
-            if limit is not None:
-                speed["max"] = round(limit * 3.6, 6)
+            limited = self._speed_limit if limit is None else limit
             self._surfaces[limit, friction] = (
                 XmlElement("material", surface, is_shared=True),
-                XmlElement("speed", {"sOffset": 0, **speed}, is_shared=True),
+                *_speed(limited, sOffset=0),
             )
         return self._surfaces[limit, friction]
+
+
+def _speed(limit: float | None, **place: Value) -> Iterator[XmlElement]:
+    if limit is not None:
+        told: dict[str, Value] = {**place, "max": round(limit * 3.6, 6), "unit": "km/h"}
+        yield XmlElement("speed", told, is_shared=True)
 
 
 def _is_constant(profile: Profile) -> bool:
