@@ -21,6 +21,7 @@ from roadgpt.campaign.gate import Gate
 from roadgpt.errors import GateError, UsageError
 from roadgpt.road import Road, World
 from roadgpt.run import Request, Run, Setup, prove, write_run
+from roadgpt.verdict import JUDGEMENT
 
 STRAIGHT = [[60, 100], [100, 100], [140, 100]]
 BEND = [[60, 100], [90, 100], [100, 110], [100, 140]]
@@ -352,3 +353,12 @@ def test_a_baseline_that_was_judged_by_another_criterion_is_refused_by_name(tmp_
     alone = a_run(outcome="FAIL", world=World().changed(avoidable="rss"), setup=Setup())
     write_run(a_test(), tmp_path / "alone")
     assert Gate(None, (), tmp_path / "alone").add("it", replace(alone, seed=1)).startswith("FAIL")
+
+
+def test_a_baseline_that_was_judged_by_other_rules_is_told(tmp_path: Path) -> None:
+    before = a_run()
+    versions = {name: value for name, value in before.versions.items() if name != "judgement"}
+    write_run(replace(before, versions=versions), tmp_path)
+    found = Gate(None, (), tmp_path)
+    assert found.add("it", before) == ""
+    assert found.remark.endswith(f"; it was driven with rules of judgement 1 (here {JUDGEMENT})")

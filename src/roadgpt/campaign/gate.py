@@ -1,7 +1,7 @@
 """Decides whether results are good enough: by their outcomes, and compared with an earlier folder."""
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
 from pathlib import Path
@@ -20,6 +20,7 @@ from roadgpt.plural import plural
 from roadgpt.road import Road, World
 from roadgpt.road.world import oracle_limits
 from roadgpt.run import Outcome, Request, Run
+from roadgpt.run.versions import judgement_of
 from roadgpt.verdict import Verdict
 
 LOSS = 0.1  # m; a road from files of two formats was driven with margins that differ by up to 0.041 m
@@ -65,7 +66,8 @@ class Gate:
         self._counts[run.outcome if run else "ERROR"] += 1
         if run is None or run.road is None or self._baseline is None:
             return ""
-        return self._compare(name, _result(run.outcome, run.verdict, run.request, run.road, run.seed))
+        its = (run.outcome, run.verdict, run.request, run.road, run.seed, run.versions)
+        return self._compare(name, _result(*its))
 
     def add_folder(self, folder: Path) -> None:
         """Counts the tests of a campaign or a folder of runs."""
@@ -148,17 +150,20 @@ def _results(folder: Path) -> Iterator[tuple[NumberedTest, _Result]]:
                     if found := record.road(cell, its):
                         road, request = found
                         name = NumberedTest(cell.name, its.number)
-                        yield name, _result(its.outcome, its, request, road, record.seed(its))
+                        versions = record.versions(request.setup.driver)
+                        yield name, _result(its.outcome, its, request, road, record.seed(its), versions)
 
 
 def _result(
-    outcome: Outcome, found: Verdict | Result | None, request: Request, road: Road, seed: int
-) -> _Result:
+    outcome: Outcome, found: Verdict | Result | None, request: Request, road: Road, seed: int,
+    versions: Mapping[str, str],
+) -> _Result:  # fmt: skip
     setup, scene = request.setup, request.world.scene
     among = (setup.scenario.partition(" ")[0], request.world.values()["scene"], Path(setup.tracks).name, seed)
     is_among = setup.scenario or setup.tracks or scene.actors or scene.has_flow
     margin = None if found is None or found.cause == "collision" else found.margin
-    return _Result(outcome, margin, _settings(request), _outline(road), among if is_among else ())
+    settings = _settings(request) | {"rules of judgement": judgement_of(versions)}
+    return _Result(outcome, margin, settings, _outline(road), among if is_among else ())
 
 
 def _outline(road: Road) -> Array:

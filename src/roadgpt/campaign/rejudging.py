@@ -4,19 +4,18 @@ A drive is judged with the road, the scene and the tracks of others that are sto
 driven, and no driver is loaded."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 from roadgpt.campaign.folder_record import FolderRecord, open_record
 from roadgpt.campaign.model import NumberedTest
 from roadgpt.errors import SceneError, UsageError
 from roadgpt.run import REFUSED, Run, judged
+from roadgpt.run.versions import judgement_of
 
-UNVERSIONED = 1  # the version of the rules of records that name none
 
-
-@dataclass(frozen=True)
-class Rejudged:
+class Rejudged(NamedTuple):
     """A stored outcome, and that of today."""
 
     name: NumberedTest
@@ -30,11 +29,6 @@ class Rejudged:
     has_scene: bool = True
     """Whether its scene is stored; that of a scenario in a campaign is the one of today's catalogue."""
 
-    @property
-    def is_other(self) -> bool:
-        """Whether the outcome would be another one today."""
-        return bool(self.today) and self.stored != self.today
-
 
 def rejudge(folder: Path) -> Iterator[Rejudged]:
     """Yields each test of a campaign, of a folder of runs or of a run that was judged, judged again."""
@@ -43,14 +37,13 @@ def rejudge(folder: Path) -> Iterator[Rejudged]:
             try:
                 run = record.run(*name)
                 if run.drive is not None and run.verdict is not None:
-                    is_of_campaign = not isinstance(record, FolderRecord)
-                    yield _again(name, run, has_scene=not (run.request.setup.scenario and is_of_campaign))
+                    has_scene = isinstance(record, FolderRecord) or not run.request.setup.scenario
+                    yield _again(name, run, has_scene)
             except UsageError as error:
-                yield Rejudged(name, UNVERSIONED, "", "", str(error))
+                yield Rejudged(name, 0, "", "", str(error))
 
 
 def _again(name: NumberedTest, run: Run, has_scene: bool) -> Rejudged:
-    version = int(run.versions.get("judgement", UNVERSIONED))
     try:
         again = judged(run)
     except SceneError as error:
@@ -59,6 +52,7 @@ def _again(name: NumberedTest, run: Run, has_scene: bool) -> Rejudged:
     was, now = run.description.split("; "), again.description.split("; ")
     before, after = ("; ".join(part for part in a if part not in b) for a, b in ((was, now), (now, was)))
     why = f"it was: {before or run.description}; today: {after or again.description}"
+    version = judgement_of(run.versions)
     return Rejudged(name, version, stored, today, why if today != stored else "", has_scene)
 
 

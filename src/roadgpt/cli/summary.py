@@ -3,7 +3,6 @@
 import json
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict
 from itertools import islice
 from pathlib import Path
 
@@ -292,15 +291,16 @@ def rejudged_lines(folders: Sequence[str], as_json: bool) -> Iterator[str]:
         for each in rejudge(Path(folder)):
             name = str(folder) if is_run(Path(folder)) else f"{folder}/{each.name}"
             if as_json:
-                yield json.dumps({**asdict(each), "name": name, "rules": JUDGEMENT})
+                yield json.dumps({**each._asdict(), "name": name, "rules": JUDGEMENT})
                 continue
             lost, of_catalogue = lost + (not each.today), of_catalogue + (not each.has_scene)
-            versions[each.version] += bool(each.today)
-            if each.is_other:
-                kinds[f"{each.stored} -> {each.today}"] += 1
-                yield f"{name}  {each.stored} -> {each.today}  {each.why}"
-            elif not each.today:
+            if not each.today:
                 yield f"{name}  cannot be judged again: {each.why}"
+                continue
+            versions[each.version] += 1
+            if each.today != each.stored:
+                kinds[kind := f"{each.stored} -> {each.today}"] += 1
+                yield f"{name}  {kind}  {each.why}"
     if as_json:
         return
     drives, others = plural(versions.total(), "drive"), plural(kinds.total(), "outcome")
@@ -309,8 +309,7 @@ def rejudged_lines(folders: Sequence[str], as_json: bool) -> Iterator[str]:
     yield f"{others} would be others today" + f", {lost:,} cannot be judged again" * bool(lost)
     yield from (f"  {count:>5,}  {kind}" for kind, count in kinds.most_common())
     if of_catalogue:
-        told = plural(of_catalogue, "test")
-        yield f"the scene of {told} is that of today's catalogue: a campaign of scenarios stores none"
+        yield f"{of_catalogue:,} by scenes of today's catalogue: a campaign of scenarios stores none"
 
 
 def _folder_lines(folder: Path) -> Iterator[str]:

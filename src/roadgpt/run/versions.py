@@ -70,6 +70,11 @@ def versions_of(setups: Sequence[Setup], driver: Any = None, generators: Iterabl
     return found | {FILE + name: its for name, its in getattr(driver, "files", {}).items()}
 
 
+def judgement_of(versions: Mapping[str, str]) -> int:
+    """Returns the version of the rules by which a drive with this record was judged."""
+    return int(versions.get("judgement", 1))
+
+
 @cache
 def _source(place: Path) -> str:
     return digest(place, "*.py")

@@ -1,20 +1,12 @@
 """Says who had the way in a collision, which offences each of the two committed, and whose fault it was.
 
-Sources: Vienna Convention on Road Traffic, 1968, and, for a lane change that endangers somebody, UN R79.
-
-- red light, stop, priority: at a junction, as in ``verdict.right_of_way``, for both alike. Who drives through
-  red has no priority. Somebody on a crosswalk has the way (article 21), unless the car has green there; who
-  comes from beside the road elsewhere has not (articles 12 and 21);
-- wrong way: the middle of a box is in a lane of the other direction, or the box moves backwards; lane: only
-  part of it reaches out of its own lane (article 10), or it came into the other's lane less than
-  UN R79, 5.6.4.7, asks for: who is behind would have to brake with more than 3 m/s2, begun after 0.4 s, to
-  keep a distance of 1 s (articles 11 and 14);
-- distance: it ran into who was ahead in its own lane, or stood there (article 13);
-- speed: as in ``verdict.incidents``, for 1 s within the last 3 s.
+Sources: Vienna Convention on Road Traffic, 1968, and, for coming into another's lane, UN R79, 5.6.4.7: who is
+behind must not have to brake with more than 3 m/s2, begun after 0.4 s, to keep a distance of 1 s. Offences at
+junctions are those of ``verdict.right_of_way``, for both alike; ``docs/explanation/traffic.md`` has all.
 
 At fault is whose offence has to do with the contact, and the tested car also where it brought the collision
-about itself (``verdict.avoidable``), such as by braking for nothing (article 17). Speed is none of who is hit
-in the rear. Things and animals commit no offences. That one could have braked in time is none either.
+about itself (``verdict.avoidable``). That one could have braked in time is no offence, and things and animals
+commit none.
 """
 
 from collections.abc import Sequence
@@ -62,10 +54,8 @@ def law_of(road: "Road", drive: "Drive", world: "World", incidents: Sequence[Inc
     states, limit = drive.others.states[: last + 1, number], limits_at(road, world, np.array([hit.at_s]))
     if only_road(road, world) is None:
         (places,) = lanes_of(network_of(road, world)).places(states[-1:, [X, Y]])
-        lanes = (each.lane.member.profile.lanes[each.lane.id.lane] for each in places)
-        limit = np.array(
-            [max((each.speed_limit or world.limits.speed_limit for each in lanes), default=np.inf)]
-        )
+        limits = (each.lane.member.profile.lanes[each.lane.id.lane].speed_limit for each in places)
+        limit = np.array([max((each or world.limits.speed_limit for each in limits), default=np.inf)])
     if _is_fast(np.abs(states[-round(RECENT / STEP) :, SPEED]), limit, STEP):
         its.add("speed")
     is_liable = drive.others.actors[number].kind in LIABLE
@@ -157,9 +147,14 @@ def _on_road(road: "Road", drive: "Drive", world: "World", hit: Incident, number
         is_over = abs(mine.t[-1]) > reach and along < 0
         return "other", {"wrong way" if is_over else "lane"}, set()
     if not stands and abs(across) > ACROSS * np.hypot(along, across):
-        if actor.kind in ("adult", "child") and _has_crosswalk(road, world, drive, hit, float(spot.along[0])):
-            return "other", {"priority"}, set()
-        return "ego", set(), {"priority"}
+        s, crossed = float(spot.along[0]), network_of(road, world).crossed
+        is_on_crosswalk = actor.kind in ("adult", "child") and any(
+            (way.departure in crossed and way.end <= s <= way.end + CROSSED)
+            or (way.arrival in crossed and way.start - CROSSED <= s <= way.start
+                and not (drive.lights and way.control == "lights"))
+            for way in road.passages
+        )  # fmt: skip
+        return ("other", {"priority"}, set()) if is_on_crosswalk else ("ego", set(), {"priority"})
     if not stands and along < 0:
         return "ego", set(), {"wrong way" if abs(boxes.t[-1]) < reach else "lane"}
     if contact.face == "rear" or car[3][-1] <= STANDS:
@@ -172,14 +167,3 @@ def _on_road(road: "Road", drive: "Drive", world: "World", hit: Incident, number
     if came and gap < closing * BEGINS + closing**2 / (2 * BRAKES) + boxes.velocity[came, 0] * APART:
         return "ego", set(), {"lane" if actor.kind in VEHICLES else "priority"}
     return "other", {"distance"}, set()
-
-
-def _has_crosswalk(road: "Road", world: "World", drive: "Drive", hit: Incident, s: float) -> bool:
-    """Whether there is a crosswalk at a station, and the tested car has no green light for it."""
-    crossed = network_of(road, world).crossed
-    for each in road.passages:
-        if each.arrival in crossed and each.start - CROSSED <= s <= each.start:
-            return not (drive.lights and each.control == "lights")
-        if each.departure in crossed and each.end <= s <= each.end + CROSSED:
-            return True
-    return False
