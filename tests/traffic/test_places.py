@@ -215,7 +215,7 @@ def test_what_is_there_is_found():
 def test_what_is_not_there_is_refused_by_name():
     road, world, _ = made(PLANS[0])
     for text, named in (
-        ("car junction left", "no junction after 30 m with a road from the left"),
+        ("car junction left", "no junction after 30 m at which somebody from the left"),
         ("car roundabout", "no roundabout"),
         ("car ramp: merge", "no ramp"),
         ("child crosswalk", "no crosswalk"),

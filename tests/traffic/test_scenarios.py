@@ -166,7 +166,6 @@ def test_a_scenario_asks_nothing_of_a_road_on_which_it_can_happen_that_the_words
     [
         ("straight 100", "ncap:CCRb", "needs 1[0-9]0 m of road"),
         ("| lanes=1", "r157:cut_out_fully_blocking", "two lanes"),
-        ("turn x2", "ncap:CCCscp", "needs a junction"),
         ("crossroads right", "ncap:CCFtap", "goes left at the junction"),
         ("crossroads straight stop", "leaderboard:red_light_runner", "needs lights"),
         ("straight 60; hairpin left", "nhtsa:animal_no_maneuver", "before bends"),

@@ -299,12 +299,27 @@ def motorways_continued(brief: Brief) -> list[Brief]:
     return roads
 
 
+LEAST_BEFORE_CHANGE = 12.0  # m, least length of a road before or behind a place where lanes change
+
+
+def rest_of_route(brief: Brief, number: int) -> float:
+    """Returns how many metres of the required length of a route are left for the only road without a length,
+    which is the last one and lies behind place ``number``; 0 if there is no such length, or no such road."""
+    *roads, last = brief.stretches
+    if brief.length is None or last.length or last.clauses or number < len(roads) - 1:
+        return 0.0
+    lengths = [span(road.length).lo for road in roads if road.length]
+    return max(span(brief.length).lo - sum(lengths), 0.0) if len(lengths) == len(roads) else 0.0
+
+
 def counts_to_change(brief: Brief, number: int) -> bool:
     """Returns whether the required length of the road before a lane change, place ``number``, counts to the
     middle of the road behind, where the car changes lanes. It does if no length is required of the road
-    behind, or if that length is the distance to the next lane change."""
+    behind, or if that length is the distance to the next lane change; but not if the whole route is so long
+    that the middle of the road behind lies farther ahead."""
     if brief.stretches[number + 1].length is None:
-        return True
+        before, rest = span(brief.stretches[number].length), rest_of_route(brief, number)
+        return not rest or rest <= before.lo - LEAST_BEFORE_CHANGE
     following = brief.junctions[number + 1 : number + 2]
     is_next = any(place.kind == "lane_change" for place in following)
     return is_next and not brief.stretches[number + 2].clauses and counts_to_change(brief, number + 1)

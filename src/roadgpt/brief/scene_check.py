@@ -7,6 +7,7 @@ from roadgpt.brief.junctions import LANE_KINDS, RAMPS
 from roadgpt.brief.model import Brief, span
 from roadgpt.brief.outline import outline
 from roadgpt.brief.scene import FLOWS, LEAVES, Scene, Where
+from roadgpt.brief.scene_places import with_places
 from roadgpt.errors import BriefError
 
 NEEDS: Mapping[Where, str] = {
@@ -23,7 +24,7 @@ NEEDS: Mapping[Where, str] = {
 
 def check_scene(scene: Scene, brief: Brief) -> None:
     """Raises BriefError if a scene needs what the Brief excludes; what the Brief leaves open is no fault."""
-    if scene != Scene() and (fault := next(_faults(scene, brief), "")):
+    if scene != Scene() and (fault := next(_faults(scene, with_places(brief, scene)), "")):
         raise BriefError(fault)
 
 

@@ -17,6 +17,7 @@ from roadgpt.brief.outline import outline
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.scene import ACROSS, HEAD_ON, LEAVES, MOST_MORE, MOVING, USUAL_SPEEDS, Action, Role, Scene
 from roadgpt.brief.scene_check import check_scene
+from roadgpt.brief.scene_places import comes_to_junction, with_places
 from roadgpt.brief.words import MOTORWAY_RADIUS
 from roadgpt.errors import BriefError
 
@@ -39,6 +40,7 @@ def fitted(brief: Brief, scene: Scene, limit: float, map_size: float | None = No
     the speed limit in m/s, ``map_size`` the side in metres of a map that is given. Raises BriefError if the
     Brief excludes it. Where the scene does not say the speed of the tested car, the Brief excludes no length
     and no bend: the car then begins as fast as it can."""
+    brief = with_places(brief, scene)
     check_scene(scene, brief)
     needs = (scene.actors, scene.has_flow, scene.speed, scene.lane, scene.slippery, scene.turn)
     if brief.map is not None or not any(needs):
@@ -50,11 +52,14 @@ def fitted(brief: Brief, scene: Scene, limit: float, map_size: float | None = No
         side, far = map_size or brief.map_size, _until_met(scene, speed)
         return _suited(brief, scene, lanes, speed, before, before + stop, side, far)
     places = [place for place in brief.junctions if place.kind not in (*LANE_KINDS, *RAMPS)]
-    at_junction = bool(scene.turn) or any(role.where in ("junction", "roundabout") for role in scene.actors)
+    at_junction = bool(scene.turn) or any(
+        comes_to_junction(role) or role.where in ("roundabout", "crosswalk") for role in scene.actors
+    )
     first, *others = brief.stretches
     junctions = list(brief.junctions)
     if at_junction and places:
-        before = until = ROLLS * speed + SPARE
+        crosses = any(role.where == "crosswalk" for role in scene.actors)
+        before = until = before if crosses else ROLLS * speed + SPARE
         junctions[junctions.index(places[0])] = _with_way(places[0], scene)
     else:  # the car goes on straight where it can, and what is longer than the first road happens there
         until, before = before, before + stop
@@ -142,19 +147,12 @@ def _takes(action: Action, speed: float) -> tuple[float, float]:
 
 
 def _with_way(place: JunctionClause, scene: Scene) -> JunctionClause:
-    lights = any(each.what == "run_light" for role in scene.actors for each in role.actions)
     if scene.turn and place.take and not place.take.endswith(scene.turn):
         raise BriefError(
             f"the tested car goes {scene.turn} at the junction, and the words say {place.take}; change one of"
             " them"
         )
-    if lights and place.control not in (None, "lights"):
-        raise BriefError(
-            f"who runs a red light needs lights, and the junction has {place.control}; write lights"
-        )
-    return place.model_copy(
-        update={"take": place.take or scene.turn, "control": "lights" if lights else place.control}
-    )
+    return place.model_copy(update={"take": place.take or scene.turn})
 
 
 def _suited(

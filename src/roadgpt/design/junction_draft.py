@@ -32,7 +32,14 @@ from roadgpt.brief.junctions import (
     is_about,
     side_of,
 )
-from roadgpt.brief.model import Brief, counts_to_change, is_one_road, motorways_continued
+from roadgpt.brief.model import (
+    LEAST_BEFORE_CHANGE,
+    Brief,
+    counts_to_change,
+    is_one_road,
+    motorways_continued,
+    rest_of_route,
+)
 from roadgpt.brief.ranges import Range, nearest, overlap
 from roadgpt.brief.words import MOST_LANES, ROAD
 from roadgpt.network.building import BETWEEN, MOUTH, TURN_TAPER, USUALLY_FED, ring_width, smallest_radius
@@ -60,7 +67,7 @@ LEAST_TAPER = 10.0  # m
 MOST_IN_TAPER = 0.6  # greatest share of the required length of a road that a taper takes
 LEAST_BESIDE = 20.0  # m, least length of an acceleration or deceleration lane, if none is required
 SHORT_ROAD = 30.0  # m, least length of a road before or behind a ramp
-SHORTEST_PART = 12.0  # m, least length of a road before or behind a place where lanes change
+SHORTEST_PART = LEAST_BEFORE_CHANGE
 TURN_LENGTH = 30.0  # m, length of a turn lane that is wider than 0.9 of its width, if none is required
 SLACK = 1.0  # m by which a length exceeds the least one that is required
 CHANGE = (40.0, 80.0)  # m, length of a road in whose middle the car changes lanes, if none is required
@@ -194,7 +201,8 @@ def counted_from_lanes(brief: Brief, places: Sequence[PlaceDesign], width: float
         is_placed = n > 0 and places[n - 1].kind == "lane_change" and bool(_distances(brief, n - 1))
         if is_placed or not (distances or (before is not None and counts_to_change(brief, n))):
             continue
-        lengths = _lengths_of_changes(brief.roads[n : n + 2], distances)
+        rest = 2 * rest_of_route(brief, n)
+        lengths = [rest] if rest else _lengths_of_changes(brief.roads[n : n + 2], distances)
         roads[n] = _longer(roads[n], -lengths[0] / 2)
         for k, own in enumerate(lengths, n + 1):
             roads[k] = roads[k].model_copy(update={"length": between(own - SLACK, own + SLACK)})

@@ -222,10 +222,23 @@ def _designed(run: Run, brief: Brief, earlier: Sequence[Design]) -> Run:
             rounds=attempt + 1,
             designing=getattr(designer, "report", None),
         )
-        if not findings:
+        if not findings and _is_staged(run):
             break
         notes = tuple(finding.sentence for finding in findings)
     return run
+
+
+def _is_staged(run: Run) -> bool:
+    """Returns whether the others of the scene can be, and act, on the road of a Run."""
+    if run.road is None or not run.world.scene.has_others:
+        return True
+    from roadgpt.traffic.traffic import begin  # roads without others do not need it
+
+    try:
+        begin(run.road, run.world, run.seed)
+    except SceneError:
+        return False
+    return True
 
 
 def _driven(run: Run, despite_findings: bool = False) -> Run:

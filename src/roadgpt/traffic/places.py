@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roadgpt.brief.junctions import Side
+from roadgpt.brief.outline import USUALLY_WIDEST
 from roadgpt.brief.scene import ActorKind, Mark, Scene, Where
 from roadgpt.check.measures import measure
 from roadgpt.errors import SceneError
@@ -31,6 +32,8 @@ KEPT_FREE = 5.0 + sum(CROSSWALK) + PLACE / 2
 """Metres from a junction to the middle of a parked vehicle: 5 m before and behind it and its crosswalks stay
 free (Germany, StVO, section 12)."""
 ALONG = 2.5  # m before and behind a parked car where the edge of the lanes is looked at
+WIDEST = (USUALLY_WIDEST, 1000.0, 4000.0)
+"""The radii in metres of the widest bends that are turns: the wider ones if there are not enough others."""
 ROOM = 1.5  # m, from the middle of a way to the vehicles that are parked beside it
 SIGN = {"left": 1.0, "right": -1.0}
 
@@ -96,8 +99,15 @@ def stretch_of(mark: Mark, road: "Road", path: Way) -> tuple[float, float]:
         edges = [0.0, *(edge for span in passages for edge in span), road.length]
         free = [(a, b) for a, b in list(pairwise(edges))[::2] if b - a > 10.0]
         lines = [road.at(np.linspace(a, b, math.ceil(b - a) + 1)) for a, b in free]
-        turns = [(a, turn) for (a, _), line in zip(free, lines, strict=True) for turn in measure(line).turns]
-        spans = [(a + turn.start, a + turn.end) for a, turn in turns]
+        for widest in WIDEST:  # m: turns of a motorway are wide
+            turns = [
+                (a, each)
+                for (a, _), line in zip(free, lines, strict=True)
+                for each in measure(line, widest).turns
+            ]
+            spans = [(a + turn.start, a + turn.end) for a, turn in turns]
+            if len(spans) >= abs(mark.number):
+                break
     at = mark.number - 1 if mark.number > 0 else len(spans) + mark.number
     if not 0 <= at < len(spans):
         raise SceneError(

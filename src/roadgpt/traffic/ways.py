@@ -36,10 +36,10 @@ MERGED = 0.5  # m between the middles of two ways that have become one
 AROUND = 30.0  # m of the tested car's path before and behind a junction on which somebody may meet it
 STRAIGHT = math.radians(60.0)  # within which who crosses goes straight on
 TURNS: Mapping[What, tuple[float, float, tuple[bool, ...]]] = {
-    "cross": (0.0, STRAIGHT, (False, True)),
+    "cross": (0.0, math.pi, (False, True)),
     "run_light": (0.0, math.pi, (False, True)),
     "run_sign": (0.0, math.pi, (False, True)),
-    "turn_across": (OPPOSITE, math.pi, (False,)),
+    "turn_across": (OPPOSITE, math.pi, (False, True)),
     "turn_in": (STRAIGHT_AHEAD, math.pi, (True,)),
     "merge": (0.0, OPPOSITE, (True,)),
 }
@@ -65,9 +65,8 @@ def way_of(role: Role, near: float, road: "Road", world: "World", away: float | 
                 return way
     side = f"the {role.side}{' side' * (role.side == 'opposite')}" if role.side else "another side"
     does = DOINGS[_turn(role)].said
-    raise SceneError(
-        f"the route passes no {wanted.format(near=near, side=side, does=does, where=role.where)}"
-    )
+    lacks = wanted.format(near=near, side=side, does=does, where=role.where)
+    raise SceneError(f"the route passes no {lacks}; change one of them")
 
 
 def _across(role: Role, near: float, road: "Road", world: "World", away: float | None) -> Way:
@@ -315,11 +314,10 @@ def _turning_off(around: _Around) -> Iterator[Way | None]:
 WAYS: Mapping[str, tuple[Callable[[_Around], Iterator[Way | None]], str]] = {
     "junction": (
         _through_junction,
-        "junction after {near:.0f} m with a road from {side}, from which somebody who {does} meets the "
-        "tested car",
+        "junction after {near:.0f} m at which somebody from {side} who {does} meets the tested car",
     ),
     "roundabout": (_on_ring, "roundabout after {near:.0f} m"),
-    "ramp": (_from_ramp, "ramp that joins its lane after {near:.0f} m; write for example merge main"),
+    "ramp": (_from_ramp, "ramp that joins its lane after {near:.0f} m"),
     "turn_off": (_turning_off, "junction after {near:.0f} m where somebody {where} can turn off"),
 }
 """The ways of those at a place, or who turn off, the best ones first, and what is missing if there are none.
