@@ -1,6 +1,7 @@
 # make demo    words to driven roads and pictures, from nothing but Python, pip and make
 # make test    format, types and every test; ends with the seconds it took
 # make bench   the figures of benchmarks/        make docs    the site in site/
+#              with SIZE=smallest: whether each of them runs
 # make figures the outputs and pictures of README and docs, from the commands beside them
 # make train   train the reader further, with OUT=folder TRAIN='--steps 2000': training/README.md
 # make judges  ASAM's checker of OpenDRIVE, which wants an environment of its own; make test asks it
@@ -57,7 +58,7 @@ demo: $(VENV)/.installed
 
 # The simulator and the camera are compiled once, beside the check of types; each worker and process would compile anew.
 test: export PYTHONDONTWRITEBYTECODE =
-test: $(VENV)/.installed-test judges/.installed
+test: $(VENV)/.installed-test judges/.installed judges/.browser
 	$(BIN)/python -m ruff check .
 	$(BIN)/python -m ruff format --check .
 	{ $(BIN)/python -m roadgpt run "a road" --scene light --seed 1 --out "$$(mktemp -d)/compiled" && \
@@ -68,7 +69,8 @@ test: $(VENV)/.installed-test judges/.installed
 	@echo "make test: $(SECONDS_SO_FAR) s"
 
 bench: $(VENV)/.installed-test
-	@for file in benchmarks/bench_*.py; do echo "== $$file"; $(BIN)/python $$file || exit 1; done
+	@$(if $(filter smallest,$(SIZE)),grep '^bench_' benchmarks/smallest.txt,ls benchmarks | grep '^bench_') | while read -r line; do \
+	  echo "== $$line"; $(BIN)/python benchmarks/$$line < /dev/null || exit 1; done
 	@echo "make bench: $(SECONDS_SO_FAR) s"
 
 # Not --quiet, with which --strict overlooks links that lead nowhere.
@@ -88,6 +90,17 @@ train: $(VENV)/.installed-test
 	cd training && ../$(BIN)/python -m roadgpt_training train $(OUT) --installed $(TRAIN)
 
 judges: judges/.installed
+
+# The browser of the tests of pages, which only root can install; elsewhere those tests are skipped, with the reason.
+judges/.browser:
+	@mkdir -p judges
+	@if command -v chromium || command -v chromium-browser || command -v google-chrome; then :; \
+	elif [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+	  echo "installing chromium"; export DEBIAN_FRONTEND=noninteractive; \
+	  { apt-get update && apt-get install --yes --no-install-recommends chromium; } >/dev/null 2>&1 \
+	  || echo "chromium cannot be installed; tests in a browser are skipped"; \
+	else echo "there is no chromium; tests in a browser are skipped"; fi
+	@touch $@
 
 # It wants a numpy below 2, so it has an environment of its own; for Python 3.13 there is no such numpy.
 judges/.installed: $(VENV)/.python-$(WANTED)

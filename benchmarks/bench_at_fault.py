@@ -4,12 +4,9 @@ python benchmarks/bench_at_fault.py 500                     reference, also with
 python benchmarks/bench_at_fault.py 100 --drivers lane_centring --flow light"""
 
 import argparse
-import sys
 import time
 from collections import Counter
-from pathlib import Path
 
-sys.path += [str(Path(__file__).parents[1] / "training")]
 from drawn_routes import drawn_routes
 from roadgpt.drive import Command, View, simulate
 from roadgpt.drive.drivers.reference import Reference

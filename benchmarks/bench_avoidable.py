@@ -108,7 +108,8 @@ def main() -> None:
         list_avoidable(given.driver, given.scenarios, given.points)
         return
     if given.checkout is None:
-        parser.error("give the folder of ec-jrc/JRC-FSM, or a --driver")
+        print("no program of the JRC here: give the folder of ec-jrc/JRC-FSM, or a --driver", file=sys.stderr)
+        return
     sys.path.insert(0, str(given.checkout))
     warnings.simplefilter("ignore")  # of its divisions by zero
     from utility import models, movement

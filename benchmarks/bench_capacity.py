@@ -79,6 +79,9 @@ def sumos(sumo, netconvert, limit):
 
 def main():
     own, limit = ours()
+    if len(sys.argv) < 3:
+        print(f"at {limit * 3.6:.0f} km/h: ours {own:.0f} vehicles an hour; without paths SUMO is not asked")
+        return
     other = sumos(*sys.argv[1:3], limit)
     told = f"ours {own:.0f}, SUMO's {other:.0f} vehicles an hour: {own / other - 1:+.1%}"
     print(f"at {limit * 3.6:.0f} km/h: {told}")

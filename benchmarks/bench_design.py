@@ -1,4 +1,6 @@
-"""What the planner reaches: valid roads that keep their words, no two alike, and how long one takes."""
+"""What the planner reaches: valid roads that keep their words, no two alike, and how long one takes.
+
+python benchmarks/bench_design.py [ROADS]"""
 
 import importlib.util
 import json
@@ -36,14 +38,14 @@ EVALUATION = {  # the thesis' prompts, and what an outside referee asks of their
     },
 }
 WORLD = World()
-ROADS = 100
+ROADS = int(sys.argv[1]) if sys.argv[1:] else 100
 POINTS = 200  # per road, in the comparison of shapes
-WHOLE_PROCESS = """
+WHOLE_PROCESS = f"""
 from roadgpt.brief import read
 from roadgpt.design import draft
 from roadgpt.road import World
 brief, earlier = read("an uphill road with 3 turns"), []
-for seed in range(100):
+for seed in range({ROADS}):
     earlier.append(draft(brief, World(), earlier=earlier, seed=seed))
 """
 
@@ -61,7 +63,7 @@ def main(seed: int = 7) -> None:
     subprocess.run([sys.executable, "-c", WHOLE_PROCESS], check=True)
     after = getrusage(RUSAGE_CHILDREN)
     cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    print(f"a process that drafts 100 roads, start included: {cpu:.2f} s processor (target 5 s)")
+    print(f"a process that drafts {ROADS} roads, start included: {cpu:.2f} s processor (target 5 s)")
 
 
 def _campaign(words: str, truth: dict[str, Any], referee: ModuleType | None, seed: int) -> list[float]:

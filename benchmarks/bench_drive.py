@@ -1,9 +1,12 @@
 """How fast and how right the car drives: speed per core, manoeuvres, and the table beside CommonRoad.
 
+    python benchmarks/bench_drive.py [ROADS]
+
 Speeds are simulated seconds per CPU second of this process, the driver in Python included, after compiling.
 """
 
 import math
+import sys
 import time
 
 import numpy as np
@@ -13,7 +16,7 @@ from roadgpt.drive import Command, Drive, View, simulate
 from roadgpt.drive.simulators.mujoco import ETK_LIKE, plane
 from roadgpt.road import Design, Road, Segment, World, build
 
-ROADS = 30
+ROADS = int(sys.argv[1]) if sys.argv[1:] else 30
 REPEATS = 3
 
 

@@ -87,11 +87,13 @@ def main() -> None:
     """Runs the campaigns that the options name, and prints the table."""
     options = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     options.add_argument("--whole", action="store_true", help="all conditions, 100 tests each")
+    options.add_argument("--tests", type=int, help="of each campaign")
     options.add_argument("--seed", type=int, default=41)
     options.add_argument("-j", "--workers", type=int, default=1)
     options.add_argument("--folder", type=Path)
     given = options.parse_args()
     conditions, tests = (CONDITIONS, 100) if given.whole else (["dry"], 60)
+    tests = given.tests or tests
     with tempfile.TemporaryDirectory() as spare:
         folder = given.folder or Path(spare)
         folder.mkdir(parents=True, exist_ok=True)

@@ -1,6 +1,6 @@
 """How fast pictures are drawn, and how long 9 s of film take beside encoding alone: prints two tables.
 
-    python benchmarks/bench_film.py
+    python benchmarks/bench_film.py [SECONDS]
 
 Rates are pictures per CPU second of this process, after compiling: one core, nothing waited for. A film's
 clock depends on what else the machine does, its CPU seconds hardly. "Encoding alone" writes the same frames,
@@ -8,6 +8,7 @@ drawn beforehand.
 """
 
 import os
+import sys
 import tempfile
 import time
 from dataclasses import replace
@@ -18,10 +19,10 @@ from roadgpt.road import Design, Segment, World
 from roadgpt.run import Run, prove
 from roadgpt.scene import Camera, Pose, Scene
 
-SECONDS = 9.0
+SECONDS = float(sys.argv[1]) if sys.argv[1:] else 9.0
 SIZES = ((200, 66), (320, 160), (640, 360), (1280, 720))
 POSES = 20
-LEAST = 1.5  # CPU seconds for each rate
+LEAST = SECONDS / 6  # CPU seconds for each rate
 
 
 def driven(turns: tuple[float, ...]) -> Run:

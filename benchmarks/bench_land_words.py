@@ -2,7 +2,7 @@
 writers who had not seen RoadGPT wrote the truths first. Then it makes 40 changes of landscapes that a fourth
 asks for, and measures before and after.
 
-    python benchmarks/bench_land_words.py [-v]"""
+    python benchmarks/bench_land_words.py [COUNT] [-v]"""
 
 import json
 import sys
@@ -23,6 +23,7 @@ from roadgpt.ground.ground import Ground
 from roadgpt.network.landscape import crossings, ground_around
 from roadgpt.road import Road, World
 
+COUNT = int(next(filter(str.isdigit, sys.argv[1:]), 60))
 SPREADS = {"flat": (0, 10), "rolling": (4, 28), "hilly": (10, 80), "mountain": (30, 999)}
 """m between the tenths of heights within 80 m of the road, by kind of land."""
 
@@ -163,7 +164,7 @@ def changed_rightly(before: dict[str, Any], after: dict[str, Any], truth: dict[s
 
 
 def requests() -> None:
-    rows = (Path(__file__).parent / "land_requests.jsonl").read_text(encoding="utf-8").splitlines()
+    rows = (Path(__file__).parent / "land_requests.jsonl").read_text(encoding="utf-8").splitlines()[:COUNT]
     right, refused = 0, 0
     for row in map(json.loads, rows):
         brief = read(row["road"], reader="plan", is_map_fixed=False)
@@ -189,7 +190,8 @@ def requests() -> None:
 
 def main() -> None:
     requests()
-    rows = (Path(__file__).parent / "land_descriptions.jsonl").read_text(encoding="utf-8").splitlines()
+    path = Path(__file__).parent / "land_descriptions.jsonl"
+    rows = path.read_text(encoding="utf-8").splitlines()[:COUNT]
     for name in ("reader", "keywords"):
         whole, kept, asked, silent = 0, Counter[str](), Counter[str](), 0
         for row in map(json.loads, rows):

@@ -100,9 +100,12 @@ def tightest(route: Route, station: float) -> str:
 def main() -> None:
     """Prints one line for each map, and the sums."""
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    options.add_argument("folder", type=Path)
+    options.add_argument("folder", type=Path, nargs="?")
     options.add_argument("--routes", type=int, default=0)
     given = options.parse_args()
+    if given.folder is None:
+        print("no maps here: give their folder", file=sys.stderr)
+        return
     lines, whole, same, maps, kept, driven = [], 0, 0, 0, 0, 0
     for path in sorted(given.folder.rglob("*.xodr")):
         begin = time.perf_counter()

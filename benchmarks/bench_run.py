@@ -1,4 +1,6 @@
-"""What a campaign costs: processor time from command to last file, words to a valid road, bytes on disk."""
+"""What a campaign costs: processor time from command to last file, words to a valid road, bytes on disk.
+
+python benchmarks/bench_run.py [ROADS]"""
 
 import subprocess
 import sys
@@ -16,9 +18,9 @@ WORDS = (
     "an uphill road with 3 turns",
     "a road going uphill for 2 turns, followed by a straight downhill segment, ending in a left turn",
 )
-ROADS = 100
-TIMED = 60  # roads for the median
-PICTURES = 5
+ROADS = int(sys.argv[1]) if sys.argv[1:] else 100
+TIMED = min(ROADS, 60)  # roads for the median
+PICTURES = min(ROADS, 5)
 
 
 def main() -> None:

@@ -1,10 +1,13 @@
 """Tests per second of `roadgpt sbft`, and how many roads of ours their validator takes.
 
+    python benchmarks/bench_sbft.py [TESTS]
+
 Wall time of a machine that does other things beside says little; processor time of this process (validating,
 driving, judging, writing) and of the generator's is given beside it.
 """
 
 import os
+import sys
 import tempfile
 import time
 from collections import Counter
@@ -15,8 +18,8 @@ from roadgpt.check import sbft_verdict
 from roadgpt_sbft import Experiment, RoadGPTTestGenerator, compete
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples" / "sbft"
-TESTS = 200
-ROADS = 300
+TESTS = int(sys.argv[1]) if sys.argv[1:] else 200
+ROADS = 3 * TESTS // 2
 PIPELINE = 33.0  # s a test, of the competition's own with BeamNG, at best
 WORDS = (
     "a road",

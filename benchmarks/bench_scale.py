@@ -1,6 +1,6 @@
 """What a campaign costs beside its tests, and how it grows.
 
-    python benchmarks/bench_scale.py            # all; or: overhead workers leaks memory million
+    python benchmarks/bench_scale.py            # all; or: overhead [TESTS] workers leaks memory million
 
 overhead   a test that does nothing: through the store and two workers, against the bare function
 workers    tests that are drafted, driven and judged: two workers against one, and bytes on the disk
@@ -43,6 +43,7 @@ SEGMENT = Segment(
 DESIGN = Design(starting_point=(31.5, 40.25, 3.0), theta=17.5, segments=(SEGMENT,) * 7)
 FEATURES = {name: 1.234567 * number for number, name in enumerate("ABCDEFGHIJKLMNOPQR", 1)}
 STEPS_OF_A_DRIVE = 1000
+TESTS = int(next(filter(str.isdigit, sys.argv[1:]), 8000))  # that do nothing
 ENDS = {True: ("PASS", None), False: ("FAIL", "stuck")}
 
 
@@ -113,7 +114,7 @@ def of_no_cost(tests: int, function: Callable[..., FinishedTest]) -> tuple[Plan,
 
 def overhead() -> None:
     """A test that does nothing, with everything around it."""
-    tests = 8000
+    tests = TESTS
     plan, ready = of_no_cost(tests, instant)
     ready()
     cell = plan.cells({})[0]
@@ -296,7 +297,7 @@ def main() -> None:
     """Measure the part that is named, or each of several in its own process, since some replace functions of
     RoadGPT.
     """
-    names = sys.argv[1:] or list(PARTS)
+    names = [word for word in sys.argv[1:] if word in PARTS] or list(PARTS)
     if len(names) == 1:
         PARTS[names[0]]()
         return

@@ -70,7 +70,7 @@ def anywhere(truth: dict[str, Any]) -> dict[str, Any]:
 def main() -> None:
     """Prints a line for each pair, and the counts."""
     args = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    args.add_argument("--referee", type=Path, required=True, help="folder of referee_traffic.py")
+    args.add_argument("--referee", type=Path, help="folder of referee_traffic.py")
     args.add_argument("--roads", action="store_true")
     args.add_argument("--only", default="*")
     args.add_argument("--seeds", type=int, default=1)
@@ -79,6 +79,9 @@ def main() -> None:
     args.add_argument("--left-hand", action="store_true")
     args.add_argument("--verbose", action="store_true")
     given = args.parse_args()
+    if given.referee is None:
+        print("no referee here: give the folder of referee_traffic.py with --referee", file=sys.stderr)
+        return
     sys.path.insert(0, str(given.referee))
     referee = importlib.import_module("referee_traffic")
     truths = (TRUTHS / "catalogue.json").read_text()

@@ -30,7 +30,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import bootstrap, mannwhitneyu
 
-from roadgpt.campaign import Cell, CellBudget, Result
+from roadgpt.campaign import Cell, CellBudget, Proposal, Result
 from roadgpt.campaign.behaviour import cell_of
 from roadgpt.campaign.single_test import Task, execute, features_in, result_of
 from roadgpt.check import sbft_verdict
@@ -196,7 +196,8 @@ def walked(cell: Cell, job: MethodRun) -> list[tuple[Result, Road]]:
     out = []
     for number, road in enumerate(itertools.islice(walks(job.seed), job.tests), 1):
         run = prove(road, job.seed, cell.request.world, cell.request.setup, number)
-        out.append((result_of(run, Task(number, 0, None), features_in(run)), road))
+        task = Task(number, 0, Proposal(None, job.seed, "walk"))
+        out.append((result_of(run, task, features_in(run)), road))
     return out
 
 

@@ -1,9 +1,11 @@
 """Routes and maps drawn from the grammars that readers are trained with: mixed kinds, lanes, ramps, signs,
 grades and lengths, every tenth with traffic on the left."""
 
+import sys
 from collections import Counter
 from collections.abc import Iterator
 from itertools import count
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +16,8 @@ from roadgpt.design.room import world_for
 from roadgpt.errors import BriefError, DesignError
 from roadgpt.network import Route, made_from
 from roadgpt.road import World
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "training"))
 from roadgpt_training.routes import draw_route
 
 LANGUAGES = ("en", "de", "fr", "es", "it")

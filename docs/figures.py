@@ -39,8 +39,8 @@ TIMES = re.compile(r"in [\d.]+ s( \([\d.]+ roads/s\))?")
 """What differs from machine to machine in what commands print."""
 COMMANDS = {
     "pass": 'roadgpt run "a narrow road climbs out of a valley in four hairpins, '
-    'along a lake, under a ridge" --seed 2 --out pass',
-    "overview": "roadgpt view pass/runs/0001 --out pass.html",
+    'along a lake, under a ridge" --seed 2 --out roadgpt-runs/pass',
+    "overview": "roadgpt view roadgpt-runs/pass/runs/0001 --out roadgpt-runs/pass.html",
     "uphill": 'roadgpt run "an uphill road with 3 turns" -n 5 --seed 7',
     "hard": 'roadgpt campaign "an uphill road with 3 turns" --goal failures -n 200 -j 2 --seed 7 --out hard',
     "faults": "roadgpt faults hard --minimise -j 2",
@@ -101,7 +101,7 @@ def made(work: Path, *names: str) -> Path:
 
 def landscape(work: Path) -> Image.Image:
     """Returns the page of a road in its landscape, seen as a whole."""
-    return shot(made(work, "pass", "overview") / "pass.html", "#camera=free")
+    return shot(made(work, "pass", "overview") / "roadgpt-runs/pass.html", "#camera=free")
 
 
 def junctions(work: Path) -> Image.Image:

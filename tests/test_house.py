@@ -228,6 +228,13 @@ def test_benchmarks_import_only_what_is_there() -> None:
     assert not missing
 
 
+def test_every_benchmark_has_a_smallest_size() -> None:
+    """Which `make bench SIZE=smallest` runs."""
+    lines = (ROOT / "benchmarks" / "smallest.txt").read_text(encoding="utf-8").splitlines()
+    named = [line.split()[0] for line in lines if not line.startswith("#")]
+    assert named == sorted(path.name for path in ROOT.glob("benchmarks/bench_*.py"))
+
+
 def offers(module: str, name: str) -> bool:
     found = import_module(module)
     return hasattr(found, name) or (hasattr(found, "__path__") and find_spec(f"{module}.{name}") is not None)

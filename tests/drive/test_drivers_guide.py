@@ -5,8 +5,11 @@ from pathlib import Path
 
 from drive.slippery_bicycle import SlipperyBicycle
 from road_parts import road_of
+from roadgpt.brief.plan import read_plan
+from roadgpt.design import draft
 from roadgpt.drive import View
 from roadgpt.drive.loading import load_driver
+from roadgpt.network import made_from
 from roadgpt.road import World
 from roadgpt.verdict import judge
 
@@ -31,3 +34,16 @@ def test_the_guide_names_every_field_of_the_view() -> None:
     text = GUIDE.read_text(encoding="utf-8")
     missing = [name for name in View._fields if f"`{name}`" not in text]
     assert not missing
+
+
+def test_every_name_that_the_guide_uses_is_there() -> None:
+    text = GUIDE.read_text(encoding="utf-8")
+    named = set(re.findall(r"\b(?:view\.)?((?:world|road|route)(?:\.[a-z_]+)+)", text))
+    assert {"world.site.friction", "world.limits.speed_limit", "road.curvature", "route.legs"} <= named
+    plan = read_plan("| len=60 // crossroads straight // | len=60")
+    route = made_from(draft(plan, World(), seed=1), World())
+    for name in named:
+        found = {"world": World(), "road": route, "route": route}[name.split(".")[0]]
+        for part in name.split(".")[1:]:
+            assert hasattr(found, part), name
+            found = getattr(found, part)

@@ -11,15 +11,16 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from roadgpt.network import Route, made_from
+from roadgpt.network import Route, made_from, network_of
 from roadgpt.network.markings import arrows
+from roadgpt.network.paved import paved_by
 from roadgpt.report import birds_eye, height_profile, strip, view
 from roadgpt.report.overview import pages
 from roadgpt.report.page.maps import draw_site, site_of
-from roadgpt.report.plan_view import ASPHALT, GRASS, KERB, PAINT, TINT, Frame
+from roadgpt.report.plan_view import ASPHALT, GRASS, KERB, PAINT, TINT, Frame, draw_road
 from roadgpt.road import Design, Profile, Road, World, read_design
 from roadgpt.road.profile import Lane
-from roadgpt.run import Run, Setup, prove, write_run
+from roadgpt.run import Run, Setup, perform, prove, write_run
 
 TWO = {
     "starting_point": [20, 90, 0],
@@ -171,6 +172,35 @@ def test_the_place_of_a_failure_shows_the_junction_around_it(driven: Run, route:
     assert site.lines
     turns = [shapely.LinearRing(ring).is_ccw for ring in site.rings]
     assert turns == [True, *[False] * (len(turns) - 1)]  # so that holes stay empty
+
+
+@pytest.mark.parametrize(
+    "plan",
+    [
+        "straight 200 | lanes=4 against=0",
+        "straight 80 | lanes=3 against=1 // crossroads straight // straight 80 | lanes=3 against=1",
+    ],
+)
+def test_from_far_away_lines_lie_in_the_middle_of_carriageway_and_lane(plan: str) -> None:
+    """Of the carriageway, half its width from the edge of the paved area; of the lane, where a car
+    drives."""
+    run = perform(plan, 1, setup=Setup(reader="plan", driver="reference"))
+    assert run.road is not None
+    assert run.drive is not None
+    axes = Figure().add_subplot()
+    draw_road(axes, run.road, run.world, 200.0)
+    lines = [path.vertices for each in axes.collections for path in each.get_paths()]
+    lines += [np.asarray(each.get_xydata()) for each in axes.lines]
+    driven = shapely.LineString(np.stack([run.drive["x"], run.drive["y"]], axis=-1))
+    network = network_of(run.road, run.world)
+    for member, line in zip(network.roads, lines, strict=False):
+        if member.junction is None:
+            on, whole = shapely.LineString(line).interpolate(0.5, normalized=True), paved_by([member.road])
+            half = whole.area / member.road.length / 2
+            assert shapely.distance(whole.boundary, on) == pytest.approx(half, rel=0.02)
+    if len(network.roads) > 1:
+        away = shapely.distance(driven, shapely.points(lines[-1][40:-40]))
+        assert away.max() < 1.0
 
 
 def test_arrows_before_a_junction_are_drawn() -> None:

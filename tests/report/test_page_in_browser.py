@@ -57,3 +57,26 @@ def test_it_fits_every_screen_in_both_schemes_and_prints(report: Path) -> None:
         page.send("Emulation.setEmulatedMedia", media="print")
         assert page.run("getComputedStyle(document.querySelector('nav')).display") == "none"
         assert page.send("Page.printToPDF")["data"]
+
+
+def test_the_last_column_of_a_usual_table_is_seen_on_a_phone_and_that_of_a_wide_one_is_reached(
+    tmp_path: Path,
+) -> None:
+    heads = ["where the car was", "passed", "share", "outside at most", "beyond the marking, m"]
+    rows = [["at most 10 % outside", 7, "87.5 %", "3 %", 0.12], ["mostly outside", 0, "0.0 %", "–", "–"]]
+    many = [f"number {n}" for n in range(12)]
+    tables = [
+        Table("usual", "Five columns", heads, [[cell(each) for each in row] for row in rows]),
+        Table("many", "Twelve columns", many, [[cell(n) for n in range(12)]]),
+    ]
+    path = write(Page("A report", [], [Section("One", tables)], {}), tmp_path)
+    heads = "[...document.querySelectorAll('th:last-child')]"
+    last = f"{heads}.map(each => each.getBoundingClientRect().right)"
+    with browser() as page:
+        page.size(380, 740, is_phone=True)
+        opened(page, path)
+        usual, wide = page.run(last)
+        assert usual <= 380
+        assert wide > 380
+        page.run("document.querySelectorAll('.wide').forEach(e => e.scrollLeft = 1e4)")
+        assert page.run(last)[1] <= 380

@@ -8,7 +8,8 @@ from click.testing import CliRunner
 
 from roadgpt.cli import app
 from roadgpt.report.pair import pair
-from roadgpt.road import Road
+from roadgpt.road import Road, World
+from roadgpt.road.world import oracle_limits
 from roadgpt.run import Setup, prove
 
 LONG = [[20, 20, 0], [60, 30, 2], [100, 60, 4], [110, 110, 7], [150, 140, 30], [210, 200, 40]]
@@ -27,6 +28,19 @@ def test_both_roads_have_the_same_scales() -> None:
     assert beside.get_xlim() == beside2.get_xlim()
     assert np.ptp(beside.get_ylim()) == pytest.approx(np.ptp(beside2.get_ylim()))
     assert above.get_position().y0 > above2.get_position().y1
+
+
+def test_of_drivers_that_are_judged_by_their_tyres_the_distance_from_failing_is_drawn() -> None:
+    """Not the share of the car outside, which stays 0 until a tyre has long passed the marking."""
+    world = World().changed(**oracle_limits("departure"))
+    road = Road.through([[20, 20, 0], [60, 30, 0], [100, 60, 0], [110, 110, 0]])
+    run = prove(road, 1, world, Setup(driver="lane_centring"))
+    assert run.verdict is not None
+    figure = pair(run, run, drivers=("one", "other"))
+    beside = figure.axes[1]
+    assert max(np.asarray(beside.lines[0].get_ydata())) == pytest.approx(-run.verdict.margin, abs=1e-6)
+    assert "FAIL above 0 m" in [text.get_text() for text in beside.texts]
+    assert beside.get_ylabel().endswith(", m")
 
 
 def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -343,7 +343,8 @@ class Screen:
             _show(f"{told} {count:>7} {share:>7}  {least:>12}  {most:>18}")
         despite = sum(bool(row.findings) and row.max_oob is not None for row in self.rows)
         if despite:
-            _show(f"driven despite findings of the rules: {despite} (-v tells all of them)")
+            more = "" if self.verbose else " (-v tells all of them)"
+            _show(f"driven despite findings of the rules: {despite}{more}")
         _show(f"{self._number()} roads in {self.seconds:.1f} s ({self._rate():.1f} roads/s)")
 
     def _rate(self) -> float:

@@ -59,7 +59,8 @@ def advice(
         )
     if reason == TOO_ABRUPT:
         return too_fast(world, None)
-    return f"no road could keep every wish ({reason}); leave one of them open or use a larger --map-size"
+    larger = " or use a larger --map-size" if world.site.map_size < LARGEST_MAP else ""
+    return f"no road could keep every wish ({reason}); leave one of them open{larger}"
 
 
 def too_fast(world: World, slower: float | None) -> str:

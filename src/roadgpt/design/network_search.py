@@ -756,10 +756,8 @@ class MapSearch(_Search):
         size = self.world.site.map_size
         if why == TOO_LARGE:
             fewer = "junctions" if self.asked.junctions else "or shorter blocks"
-            return (
-                f"this map of roads found no place on a map of {size:g} m; ask for fewer {fewer}, or give a "
-                "larger map with --map-size"
-            )
+            larger = ", or give a larger map with --map-size" if size < LARGEST_MAP else ""
+            return f"this map of roads found no place on a map of {size:g} m; ask for fewer {fewer}{larger}"
         return f"no draft of this map was accepted: {why}; leave something out or give other numbers"
 
 

@@ -101,7 +101,7 @@ def speed_remark(brief: Brief, found: World) -> str:
     if brief.motorway and found.limits.speed_limit == MOTORWAY_LIMIT:
         limit = f"{KMH * MOTORWAY_LIMIT:g} km/h"
         return f"on a motorway, all drive at {limit} at most; --speed-limit gives another limit"
-    if not speeds or found.limits.speed_limit != Limits().speed_limit:
+    if not speeds or "speed_limit" in found.limits.model_fields_set:
         return ""
     said = " and ".join(f"{speed:g}" for speed in speeds)
     limit = f"{KMH * found.limits.speed_limit:g} km/h"

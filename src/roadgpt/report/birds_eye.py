@@ -55,6 +55,7 @@ from roadgpt.road import Road, World
 from roadgpt.run import Run
 from roadgpt.verdict import SEVERITIES, Incident, Severity, Verdict, percent, severity
 from roadgpt.verdict.judging import far_beyond
+from roadgpt.verdict.oracle import margins
 
 if TYPE_CHECKING:
     from roadgpt.campaign.faults.failures import FailureReason
@@ -349,7 +350,7 @@ def places_of(run: Run) -> list[MarkedPlace]:
         text = f"{WORDS.get(verdict.cause, verdict.cause)}{whom}{side}{station}"
         return [MarkedPlace(*verdict.at_xy, s, text, _step(run, verdict.at_time))]
     if verdict is not None and verdict.kept and verdict.max_oob and run.drive is not None:
-        return [_farthest(run.drive, verdict)]
+        return [_farthest(run, run.drive, verdict)]
     places = []
     for finding in run.findings:
         where = _where(run, finding.s, finding.x, finding.y)
@@ -392,13 +393,15 @@ def _named(group: Sequence[Incident]) -> str:
     return f"{WORDS[group[0].kind]}{other}{often}, {where}"
 
 
-def _farthest(drive: Drive, verdict: Verdict) -> MarkedPlace:
+def _farthest(run: Run, drive: Drive, verdict: Verdict) -> MarkedPlace:
     step = int(drive["outside"][: drive.lane_steps].argmax())
+    said = f"{percent(verdict.max_oob)} of the car outside,\n{far_beyond(verdict.beyond)}"
+    if run.world.limits.lane_departure:  # which is judged by the front tyres
+        assert run.road is not None
+        margin = margins(run.road, drive, run.world)[: drive.lane_steps]
+        step, said = int(margin.argmin()), f"{margin.min():.2f} m sideways\nfrom failing"
     x, y, s = (float(drive[name][step]) for name in ("x", "y", "s"))
-    beyond = far_beyond(verdict.beyond)
-    return MarkedPlace(
-        x, y, s, f"{percent(verdict.max_oob)} of the car outside,\n{beyond}", step, SEVERE[verdict.severity]
-    )
+    return MarkedPlace(x, y, s, said, step, SEVERE[verdict.severity])
 
 
 def _said(finding: Finding) -> str:

@@ -33,6 +33,7 @@ from roadgpt.report.plan_view import (
 )
 from roadgpt.road import Road, World
 from roadgpt.run import Run
+from roadgpt.verdict.oracle import margins
 
 WIDTH, LEFT, RIGHT, BOTTOM, TOP, BETWEEN = 10.6, 0.7, 0.25, 0.62, 0.62, 1.1  # inches
 SIDE = 3.3  # inches, of the square that shows a road from above
@@ -82,19 +83,24 @@ def pair(one: Run, other: Run, scale: Scale = "equal", drivers: tuple[str, str] 
 
 
 def _outside(above: Axes, beside: Axes, run: Run, long: float) -> None:
+    assert run.road is not None
     assert run.drive is not None
     driven_path(above, run.drive).set(array=None, color=INK)
     for place in places_of(run):
         mark(above, run, place)
-    s, share = run.drive["s"], 100 * run.drive["outside"]
-    beside.fill_between(s, share, color=VERMILLION, alpha=0.3, lw=0)
-    beside.plot(s, share, color=VERMILLION, lw=1.8)
-    most = 100 * run.world.limits.oob_tolerance
+    s, far, most = run.drive["s"], 100 * run.drive["outside"], 100 * run.world.limits.oob_tolerance
+    told, what, high = f"FAIL above {most:g} %", "share of the car outside its lane, %", (0.0, 105.0)
+    if run.world.limits.lane_departure:  # a tyre over the marking decides as well
+        far, most = -margins(run.road, run.drive, run.world), 0.0
+        told, what = "FAIL above 0 m", "distance beyond where it fails, m"
+        high = (min(-1.0, float(far.min())), max(0.5, 1.1 * float(far.max())))
+    beside.fill_between(s, far, high[0], color=VERMILLION, alpha=0.3, lw=0)
+    beside.plot(s, far, color=VERMILLION, lw=1.8)
     beside.axhline(most, color=INK, lw=1.2, ls=(0, (4, 3)))
-    beside.annotate(f"FAIL above {most:g} %", (long, most), (-4, -4), textcoords="offset points", size=9,
+    beside.annotate(told, (long, most), (-4, -4), textcoords="offset points", size=9,
                     color=INK, ha="right", va="top", path_effects=HALO)  # fmt: skip
-    beside.set(xlim=(0, long), ylim=(0, 105), xlabel="distance along the road, m")
-    beside.set_ylabel("share of the car outside its lane, %")
+    beside.set(xlim=(0, long), ylim=high, xlabel="distance along the road, m")
+    beside.set_ylabel(what)
     beside.grid(color=FAINT, lw=0.8)
 
 

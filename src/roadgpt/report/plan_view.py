@@ -1,7 +1,7 @@
 """Draws the road from above, to scale: shoulders, carriageway, edge lines and centre dashes; and places
 labels so that they cover neither the road nor each other."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from itertools import islice
 from typing import Any
@@ -81,10 +81,17 @@ def draw_network(axes: Axes, route: Road, network: Network, per_inch: float) -> 
 
 def draw_network_from_far(axes: Axes, route: Road, network: Network, points: float) -> None:
     """Draws the roads of a network as lines that are ``points`` wide, and the route as a darker line."""
-    lines = [each.road.centreline()[:, :2] for each in network.roads]
+    lines = [_middle_of(each.road, each.profile.edges) for each in network.roads]
     axes.add_collection(LineCollection(lines, colors=FAR_ROADS, linewidths=points, zorder=2))
-    line = route.centreline() if route.has_way else np.empty((0, 3))
-    axes.plot(line[:, 0], line[:, 1], color=FAR_ROUTE, lw=points, zorder=2.2)
+    if route.has_way:
+        assert route.profile is not None
+        axes.plot(*_middle_of(route, route.profile.lane).T, color=FAR_ROUTE, lw=points, zorder=2.2)
+
+
+def _middle_of(road: Road, between: Callable[[Array], Edges]) -> Array:
+    """Returns the line ``(n, 2)`` in the middle between two edges beside the line of a road."""
+    s = stations_of(road)
+    return np.asarray(road.at(s, np.mean(between(s), axis=0))[:, :2])
 
 
 def _fill(axes: Axes, area: Area, colour: str, layer: float) -> None:
@@ -233,8 +240,7 @@ def draw_road(axes: Axes, road: Road, world: World, per_inch: float) -> None:
     if profile.is_divided:
         _ribbon(axes, road, s, profile.edges_of(-profile.side, s), GRASS, 2.1)
     if is_far(road, world, per_inch):
-        line = road.at(s)
-        axes.plot(line[:, 0], line[:, 1], color=FAR_ASPHALT, lw=THINNEST_LANE, zorder=2)
+        axes.plot(*_middle_of(road, profile.edges).T, color=FAR_ASPHALT, lw=THINNEST_LANE, zorder=2)
         return
     solid = [t for mark, t in reversed(profile.boundaries(s)) if mark in ("solid", "double")]
     for t in solid:

@@ -16,10 +16,10 @@ SHARE_HEADS = ("of", "share", "Clopper-Pearson 95 %", "Wilson 95 %")
 
 
 def p_value(p: float) -> str:
-    """Returns a p-value as text, such as 'p = 0.010' or 'p < 1e-15'."""
-    if p < 1e-15:
-        return "p < 1e-15"
-    return f"p = {p:.1e}" if p < 0.001 else f"p = {p:.3f}"
+    """Returns a p-value as text: 'p = 0.010', 'p = 0.0004' or 'p < 0.0001'."""
+    if p < 0.0001:
+        return "p < 0.0001"
+    return f"p = {p:.4f}" if p < 0.001 else f"p = {p:.3f}"
 
 
 def as_sentence(text: str) -> str:
