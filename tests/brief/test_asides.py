@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from roadgpt.brief import read
+from roadgpt.brief import exactly, read
 from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.plan import plan
 from roadgpt.errors import BriefError, RoadGPTError
@@ -58,3 +58,9 @@ def test_numbers_of_any_length_are_read_or_refused_in_one_sentence(form: str, nu
 
 def test_changes_with_numbers_of_any_length_are_read() -> None:
     assert read_change_plan(f"road: length ={'9' * 309}")
+
+
+@pytest.mark.parametrize("share", [50, 75, 100])
+def test_an_overlap_is_read(share: int) -> None:
+    brief = read(f"VUT at 45 km/h towards a stationary car with {share} % overlap on a flat straight lane")
+    assert brief.scene.actors[0].overlap == exactly(share)

@@ -138,7 +138,10 @@ def _after_place(kind: str, where: Where, numbers: Numbers) -> Stack:
     fields = [name for name in NUMBERS if name in Role.model_fields and where in NUMBERS[name].where]
     if kind not in DOINGS["keep"].who or where == "parked":
         fields = [name for name in fields if name not in ("speed", "faster")]
-    groups = [[name for name in fields if name in group] for group in (*ONE_OF[:3], ["away"])]
+    if where == "crossing":  # the networks were not trained to write its gap to a part of the route
+        fields.remove("gap")
+    apart = (group for group in ONE_OF[:-1] if "at" not in group)
+    groups = [[name for name in fields if name in group] for group in (*apart, ["away"])]
     keys = [_one_key(names, numbers) for names in groups]
     doings = [what for what, doing in DOINGS.items() if kind in doing.who]
     first = [what for what in doings if where in DOINGS[what].starts]
