@@ -1,6 +1,7 @@
 """What is offered where the map has no room holds: typed again it is read, drafted and valid, by any seed."""
 
 import re
+from collections import Counter
 
 import numpy as np
 import pytest
@@ -8,8 +9,12 @@ import pytest
 from roadgpt import check
 from roadgpt.brief import read
 from roadgpt.brief.map_fit import longest_straight
+from roadgpt.brief.outline import outline
+from roadgpt.brief.plan import read_plan
+from roadgpt.brief.words import LARGEST_MAP
 from roadgpt.check.measures import measure
 from roadgpt.design import draft
+from roadgpt.design.advice import advice
 from roadgpt.errors import RoadGPTError
 from roadgpt.road import Road, Site, World, build
 from roadgpt.run import Setup, brief_of
@@ -105,3 +110,11 @@ def test_a_long_road_has_turns_all_along(line: str, size: float, least_turns: in
     assert len(turns) >= least_turns
     gaps = np.diff([0.0, *(turn.start for turn in turns), road.length])
     assert gaps.max() < 0.3 * road.length
+
+
+def test_nobody_is_told_to_take_a_map_larger_than_the_largest() -> None:
+    for size, is_told in ((LARGEST_MAP, False), (LARGEST_MAP - 1, True)):
+        world = World().changed(map_size=size)
+        brief = read_plan("turn x2")
+        said = advice(brief, outline(brief), world, Counter(["steep"]), (), lambda *_: None)
+        assert ("--map-size" in said) == is_told

@@ -7,7 +7,10 @@ import numpy as np
 import pytest
 
 from exported import ROADS, WORLD
+from roadgpt.brief.plan import read_plan
+from roadgpt.design import draft
 from roadgpt.export import save
+from roadgpt.network import made_from
 
 
 def saved(name: str, folder: Path) -> ET.Element:
@@ -39,3 +42,23 @@ def test_the_task_leads_from_rest_to_the_last_lanelet_of_the_right_lane(tmp_path
     assert bound(last, "right")[-1] == pytest.approx(road.at(road.length, -4.0)[:2], abs=1e-3)
     steps = int(problem.find("goalState/time/intervalEnd").text)
     assert steps * 0.1 > road.length / WORLD.limits.speed_limit
+
+
+@pytest.mark.parametrize(
+    "plan",
+    [
+        "| len=60 // crossroads left lights // | len=60",
+        "| len=60 // crossroads straight stop // | len=60",
+        "| len=60 // t_junction left lights // | len=50 // roundabout exit=2 // | len=60",
+    ],
+)
+def test_no_two_things_have_the_same_id_and_each_reference_leads_to_one(plan: str, tmp_path: Path) -> None:
+    """CommonRoad asks for ids that are unique in a file."""
+    route = made_from(draft(read_plan(plan), WORLD, seed=1), WORLD)
+    (path,) = save(route, tmp_path, ["commonroad"], WORLD)
+    root = ET.parse(path).getroot()
+    ids = [each.attrib["id"] for each in root.iter() if "id" in each.attrib]
+    assert len(ids) == len(set(ids))
+    assert ("lights" in plan) == (root.find("trafficLight") is not None)
+    assert root.find("planningProblem") is not None
+    assert {each.attrib["ref"] for each in root.iter() if "ref" in each.attrib} <= set(ids)

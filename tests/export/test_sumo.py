@@ -93,3 +93,12 @@ def test_what_netconvert_refuses_is_said_and_nothing_is_left(
     with pytest.raises(ExportError, match="netconvert refuses this road"):
         save(ROADS["arcs"], tmp_path / "out", ["sumo"], WORLD)
     assert list((tmp_path / "out").iterdir()) == []
+
+
+@pytest.mark.usefixtures("no_netconvert")
+def test_netconvert_is_told_to_add_no_ways_back_at_the_ends(tmp_path: Path) -> None:
+    """netconvert adds a turnaround to each dead end unless it is told not to."""
+    save(next(iter(ROADS.values())), tmp_path, ["sumo"], WORLD, "a")
+    root = ET.parse(tmp_path / "a.netccfg").getroot()
+    (told,) = root.iter("no-turnarounds")
+    assert told.attrib == {"value": "true"}
