@@ -31,6 +31,7 @@ SETUP = Setup(reader="plan", drives=False)
         "| motorway && car oncoming",
         "| oneway && truck behind: overtake",
         "crossroads || left_hand && car junction left: cross",
+        "junction left lights crosswalk && ego v=0; adult crosswalk: cross",
     ],
 )
 def test_a_road_has_what_its_scene_needs(plan: str) -> None:

@@ -93,10 +93,11 @@ def lights_of(road: "Road", world: "World", seed: int) -> Lights:
     lights, actors = Lights(network_of(road, world), seed), world.scene.actors
     crosses = [each for each in actors if comes_from_side(each)]
     runs = any(action.what == "run_light" for each in crosses for action in each.actions)
+    speed = world.first_speed or world.limits.speed_limit  # who stands at first goes on up to the limit
     for passage in road.passages if actors else ():
         if passage.control == "lights":
             own = lights.phases[passage.arrival]
             others = [each for each in passage.arms if lights.phases.get(each, own) != own]
             end = others[0] if crosses and others and not runs else passage.arrival
-            lights.show_green(passage.entered, end, passage.start / world.first_speed)
+            lights.show_green(passage.entered, end, passage.start / speed)
     return lights
