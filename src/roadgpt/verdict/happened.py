@@ -2,9 +2,10 @@
 
 A rehearsal tells whether it happens at the prescribed speed (``traffic.rehearsal``); if not, the test is
 INVALID. If so, the driver was not as fast as prescribed before. It may be slower where somebody ahead whom it
-sees calls for that: who is no more than NEAR seconds away at the prescribed speed, or is in its lane and no
-faster than the car. Then it avoided what was prescribed before that began; else that is NOT TESTED. Slower,
-or faster, is by more than SLACK for LASTS seconds. These bounds are ours.
+sees calls for that: who is no more than NEAR seconds away at the prescribed speed and that with which it
+comes from the side or towards the car, or is in its lane and no faster than the car. Then it avoided what was
+prescribed before that began; else that is NOT TESTED. Slower, or faster, is by more than SLACK for LASTS
+seconds. These bounds are ours.
 """
 
 from operator import itemgetter
@@ -17,7 +18,7 @@ from roadgpt.brief.visibility import weather_drawn
 from roadgpt.drive.company import heights_along, look, looks_of
 from roadgpt.drive.drive import COLUMNS
 from roadgpt.network.landscape import horizon_around
-from roadgpt.traffic.actor import SPEED, STEP, Size, X, Y
+from roadgpt.traffic.actor import HEADING, SPEED, STEP, Size, X, Y
 from roadgpt.traffic.rehearsal import rehearsed
 from roadgpt.traffic.traffic import NEVER
 from roadgpt.verdict.contact import middles
@@ -80,7 +81,7 @@ def _is_called(road: "Road", drive: "Drive", world: "World", where: NDArray[np.b
     actors, gaps, pose = drive.others.actors, measure(road, drive, world).gap, middles(drive)
     looks, line = looks_of(actors, weather_drawn(world.scene, drive.seed)), heights_along(road)
     box = np.array([drive.car.length, drive.car.width, drive.car.ahead, drive.car.height])
-    far, horizon, count = NEAR * world.first_speed, horizon_around(road, world), len(actors)
+    horizon, count = horizon_around(road, world), len(actors)
     states, order, seen = np.empty((count, 5)), np.empty(count, np.int64), np.empty((count, 7))
     found = np.zeros(len(where), bool)
     for n in np.flatnonzero(where):
@@ -90,6 +91,9 @@ def _is_called(road: "Road", drive: "Drive", world: "World", where: NDArray[np.b
         x, y, heading = pose[step]
         ahead = (now[some, X] - x) * np.cos(heading) + (now[some, Y] - y) * np.sin(heading)
         apart = np.hypot(now[some, X] - x, now[some, Y] - y) - (looks[some, 0] + drive.car.length) / 2
+        turned = now[some, HEADING] - heading
+        comes = now[some, SPEED] * (np.abs(np.sin(turned)) - np.minimum(np.cos(turned), 0.0))
+        far = NEAR * (world.first_speed + comes)
         slower = np.isfinite(gaps[n, some]) & (now[some, SPEED] < drive["speed"][step] + 1.0)
         found[n] = (slower | ((ahead > 0) & (apart < far))).any()
     return found
