@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from roadgpt.road import Road, World
     from roadgpt.traffic.lights import Lights
 
-NEVER = "it never happened that"
+NEVER, LATE = "it never happened that", "the tested car had passed before"
 
 
 class Stage(NamedTuple):

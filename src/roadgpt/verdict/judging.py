@@ -12,6 +12,7 @@ from roadgpt.errors import UsageError
 from roadgpt.network import only_road
 from roadgpt.road.world import share_in_words
 from roadgpt.traffic.actor import SPEED
+from roadgpt.traffic.traffic import LATE
 from roadgpt.verdict.oracle import EPSILON, consult, has_departed, is_outside, margins
 from roadgpt.verdict.verdict import (
     DEPARTURES,
@@ -177,7 +178,7 @@ def judge(
         outcome, why = told(road, drive, world)
         description = f"{description}; {why}" if outcome == "PASS" else f"{why}; {description}"
     else:
-        description += "".join(f"; {each}" for each in drive.missed)
+        description += "".join(f"; {each}" for each in drive.missed if not each.endswith(LATE))
     return Verdict(
         outcome=outcome,
         cause=cause,

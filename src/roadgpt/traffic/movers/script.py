@@ -11,7 +11,7 @@ from roadgpt.road.road import START
 from roadgpt.traffic.acting import BEHIND, ONCOMING, STANDS, Act, Car
 from roadgpt.traffic.actor import HEADING, SIZES, SPEED, STILL, Actor, FloatArray, TestedCar, corners
 from roadgpt.traffic.places import parked_rows
-from roadgpt.traffic.traffic import NEVER, Stage
+from roadgpt.traffic.traffic import LATE, NEVER, Stage
 from roadgpt.traffic.way import SPACING, Way
 
 UNCOVERED = 3.0  # s that who changes lanes has left before who stands behind it is reached
@@ -165,7 +165,9 @@ class Script:
             if number is None:
                 continue
             why = "the drive ended before"
-            if act.state() is None:
+            if number < act.begun and act.meeting and act.car.s > act.meeting.car:
+                why = LATE
+            elif act.state() is None:
                 why = "it had left the road" if act.is_gone else "it was not on the road yet"
             elif not act.deeds[number].is_open and act.wait(act.deeds[number]) == math.inf:
                 why = "what it waits for did not come"
