@@ -120,7 +120,8 @@ def _lasts(role: Role, speed: float, across: float) -> float:
     usual = speed if role.faster or role.kind not in USUAL_SPEEDS else USUAL_SPEEDS[role.kind] / KMH
     own = _most(role.speed) / KMH if role.speed else max(usual + _most(role.faster) / KMH, 0.0)
     own *= role.kind in MOVING
-    closing = speed + own if role.where == "oncoming" else speed - own
+    comes = role.where == "oncoming" or any(each.what == "wrong_way" for each in role.actions[:1])
+    closing = speed + own if comes else speed - own
     gap = _most(role.gap) or _most(role.lead) or _most(role.headway) * speed
     meets = gap / closing if closing > 1.0 and role.where in ("ahead", "lane", "far", "oncoming") else 0.0
     if role.where in ACROSS and own > 0:
