@@ -6,6 +6,7 @@ exported files by truths that were written before the scenarios were built.
     python benchmarks/bench_scenarios.py --referee FOLDER --only 'r157:*' --seeds 20
     python benchmarks/bench_scenarios.py --referee FOLDER --roads --sample 60 --seeds 20     60 of its pairs
     python benchmarks/bench_scenarios.py --referee FOLDER --left-hand      roads and truths mirrored
+    python benchmarks/bench_scenarios.py --prescribed     a table: driven against prescribed
 
 A pair of a scenario and a road is found, where every key of the truth holds; refused, with its sentence; or
 missed, with the keys that do not hold. On other roads than the nominal one only who is there, what they do,
@@ -20,6 +21,7 @@ import shlex
 import sys
 import tempfile
 from collections import Counter
+from collections.abc import Iterator
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
@@ -54,6 +56,26 @@ def judged(referee: Any, run: Run, truth: dict[str, Any]) -> tuple[list[str], di
     return [key for key, value in holds.items() if not value], measured
 
 
+def table(only: str) -> Iterator[str]:
+    """Yields the rows of a table of the nominal scenarios: each number as driven, in brackets as prescribed,
+    and the tolerance, with a star where it is ours."""
+    sys.path.insert(0, str(TRUTHS.parent))
+    measured, prescribed = map(importlib.import_module, ("measured", "prescribed"))
+    yield "| scenario | as driven (as prescribed), tolerance |"
+    yield "|---|---|"
+    for name in filter(lambda each: fnmatchcase(each, only), scenarios()):
+        found = measured.Measured(driven(name))
+        said = []
+        for row in prescribed.PRESCRIBED:
+            if row.scenario == name:
+                value, unit = getattr(found, row.what)(row.who, row.want), prescribed.UNITS.get(row.what, "m")
+                of = f"{row.what.replace('_', ' ')}{f' of no. {row.who + 1}' if row.who else ''}"
+                own = "*" if row.whose == "ours" else ""
+                number = f"{round(value, 2) + 0.0:g} ({round(row.want, 2):g}) {unit}"
+                said.append(f"{of} {number} ±{round(row.tolerance, 2):g}{own}")
+        yield f"| `{name}` | {'; '.join(said)} |"
+
+
 def anywhere(truth: dict[str, Any]) -> dict[str, Any]:
     """Returns what of a truth holds on any road."""
     actors = []
@@ -71,6 +93,7 @@ def main() -> None:
     """Prints a line for each pair, and the counts."""
     args = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     args.add_argument("--referee", type=Path, help="folder of referee_traffic.py")
+    args.add_argument("--prescribed", action="store_true")
     args.add_argument("--roads", action="store_true")
     args.add_argument("--only", default="*")
     args.add_argument("--seeds", type=int, default=1)
@@ -79,6 +102,10 @@ def main() -> None:
     args.add_argument("--left-hand", action="store_true")
     args.add_argument("--verbose", action="store_true")
     given = args.parse_args()
+    if given.prescribed:
+        for line in table(given.only):
+            print(line, flush=True)
+        return
     if given.referee is None:
         print("no referee here: give the folder of referee_traffic.py with --referee", file=sys.stderr)
         return
