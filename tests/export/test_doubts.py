@@ -47,7 +47,7 @@ def test_the_command_says_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
 
 
 OTHERS = "others on the road"
-LEAVE_OUT = [*{*plugins.names("exporters")} - {"openscenario", "heightmap"}]
+LEAVE_OUT = sorted({*plugins.names("exporters")} - {"openscenario", "heightmap"})
 SCENE = "truck ahead gap=30 v=50: brake decel=6; fog 60"
 
 
