@@ -10,9 +10,10 @@ from matplotlib.patches import Polygon
 from roadgpt.report import birds_eye
 from roadgpt.report.canvas import encoded
 from roadgpt.report.others import COLOURS, moment_of
+from roadgpt.report.view import _closest
 from roadgpt.road import Road, World
 from roadgpt.run import Request, Run, Setup
-from roadgpt.traffic.actor import corners
+from roadgpt.traffic.actor import STEP, corners
 from roadgpt.verdict import judge
 from staged import among, driven, straight, tracks
 
@@ -131,3 +132,19 @@ def test_somebody_who_left_is_not_drawn() -> None:
     gone[10:, 1] = np.nan
     left = replace(crash, drive=among(crash.drive, replace(others, states=gone)))
     assert len(boxes(birds_eye(left))) == len(boxes(birds_eye(crash))) - 1
+
+
+def test_the_page_names_whom_the_car_is_about_to_touch_and_where_it_touched_him(crash: Run) -> None:
+    """A third of a second before the contact nobody else is nearer in time."""
+    assert crash.verdict is not None
+    assert crash.drive is not None
+    assert crash.drive.others is not None
+    told = _closest(crash)
+    (hit,) = [each for each in crash.verdict.incidents or () if each.contact]
+    sample = int(hit.at_time / STEP) - 3
+    names = [each.name for each in crash.drive.others.actors]
+    assert names[told["near"]["who"][sample]].startswith("van")
+    assert 0.0 < told["near"]["conflict"][sample] < 0.7
+    (place,) = told["contacts"]
+    assert place["time"] == pytest.approx(hit.at_time, abs=2e-3)
+    assert (place["x"], place["y"]) == pytest.approx(hit.contact.xy, abs=0.02)
