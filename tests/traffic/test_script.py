@@ -13,6 +13,7 @@ from roadgpt.road import Design, Road, Segment, World, build
 from roadgpt.run import Setup, perform
 from roadgpt.traffic import STEP, Actor, TestedCar, begin
 from roadgpt.traffic.actor import Size, corners
+from roadgpt.traffic.rehearsal import rehearsed
 
 TestedCar.__test__ = False
 BOX = Size(4.9, 1.86, 1.4)
@@ -394,3 +395,55 @@ def test_who_comes_from_behind_appears_when_its_place_is_on_the_road() -> None:
     assert first > 0
     assert 6.0 - 0.02 <= seen.along(0)[first] < 6.0 + 50 / 3.6 * STEP  # half a bus is 6 m
     np.testing.assert_allclose(seen.gap(0)[first:], 50 / 3.6, atol=0.03)
+
+
+DOWN = Road.through([[x, 0, 100 - 0.12 * x] for x in range(0, 901, 20)])
+LEVEL = 9.81 / np.hypot(1, 0.12)
+
+
+@pytest.mark.parametrize(
+    ("scene", "did", "asked"),
+    [
+        ("ego v=50; car ahead gap=40 v=50: brake 8 time=3", "car 1 brakes", "8.0"),
+        ("ego v=50; car ahead gap=60 v=50: stop 7 for=4 time=3", "car 1 stops", "7.0"),
+        ("ego v=50; car ahead gap=40 v=50: speed 90 accel=6 time=3", "car 1 changes its speed", "6.0"),
+        ("ego v=50; car lane left gap=30 v=50: cut_in 3 time=3", "car 1 cuts in", "5.1"),
+        ("ego v=50; car lane left gap=30 v=50: drift left 0.4 lat=1.4 time=3", "car 1 drifts", "9.8"),
+    ],
+)
+@pytest.mark.parametrize(
+    ("friction", "road"), [(0.1, STRAIGHT), (0.35, STRAIGHT), (0.4, DOWN), (0.35, CURVED)]
+)
+def test_nobody_accelerates_more_than_friction_and_grade_allow_and_that_is_said(
+    scene: str, did: str, asked: str, friction: float, road: Road
+) -> None:
+    """Whatever a scene asks for; told with both numbers. At friction 1 it does what is asked for."""
+    world = WORLD.changed(friction=friction)
+    seen = show(scene, road, 9.0, world=world)
+    speed, heading = seen.states[:, 0, 4], np.unwrap(seen.states[:, 0, 3])
+    slope = (0.12 if road is DOWN else 0.05 * (road is CURVED)) * LEVEL
+    faster, turns = np.diff(speed) / STEP, np.diff(heading) / STEP * (speed[1:] + speed[:-1]) / 2
+    most = friction * (LEVEL if road is DOWN else 9.81)
+    assert np.nanmax(np.hypot(np.maximum(np.abs(faster) - slope, 0), turns)) < most + 0.15
+    if did.split()[2] in ("brakes", "stops") and road is DOWN:
+        assert -np.nanmin(faster) == pytest.approx(most - slope, abs=0.05)
+    others = rehearsed(road, world.changed(scene=scene), 1)
+    assert others is not None
+    ((said, is_prescribed),) = others.limited.items()
+    start, number = said.split(" with at most ")
+    assert (start, is_prescribed) == (did, True)
+    assert number.partition(" not ")[2].startswith(asked)
+    assert f": friction is {friction:g}" in number
+    dry = rehearsed(STRAIGHT, WORLD.changed(scene=scene), 1)
+    assert dry is not None
+    assert all(" sideways" in said and not prescribed for said, prescribed in dry.limited.items())
+
+
+def test_a_scenario_that_prescribes_more_than_the_road_gives_is_invalid_before_driving() -> None:
+    for friction, outcome in ((0.35, "INVALID"), (0.45, "FAIL")):
+        setup = Setup(driver="robot", reader="plan", scenario="ncap:CCRb")
+        run = perform("straight 400 | flat", 1, World().changed(friction=friction), setup)
+        assert run.outcome == outcome
+        if outcome == "INVALID":
+            assert run.drive is None
+            assert "car 1 brakes with at most 3.4 m/s2, not 4.0: friction is 0.35" in run.description

@@ -36,7 +36,7 @@ STEPS = {
     **dict.fromkeys(("heading", "pitch", "roll", "yaw_rate", "steer", "outside"), FINE),
     **dict.fromkeys(("ax", "ay"), COARSE),  # m/s^2
 }
-RARE = ("handovers", "lights", "missed")  # of the header, only where they are not empty
+RARE = ("handovers", "lights", "missed", "limited")  # of the header, only where they are not empty
 NOT_A_NUMBER = np.iinfo(np.int32).min
 
 Whole = NDArray[np.int32]
@@ -70,7 +70,7 @@ def drive_of(trace: Trace) -> Drive:
     """Returns the Drive of a Trace; its values differ by at most half a step from those of the original."""
     header = dict(trace.header)
     header["handovers"] = strictly(tuple[Handover, ...], header.get("handovers", ()))
-    header["missed"] = strictly(tuple[str, ...], header.get("missed", ()))
+    header |= {name: strictly(tuple[str, ...], header.get(name, ())) for name in ("missed", "limited")}
     # divided by the inverse, so that 0.02 s is 0.02 s and not its neighbour
     values = trace.rows / [[round(1 / STEPS[name])] for name in COLUMNS]
     values[trace.rows == NOT_A_NUMBER] = np.nan

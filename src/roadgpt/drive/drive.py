@@ -143,6 +143,8 @@ class Drive:
     Else they stayed green."""
     missed: tuple[str, ...] = ()
     """What of the scene had not happened when the drive ended, in sentences."""
+    limited: tuple[str, ...] = ()
+    """What others did with less than their actions ask for, because the road gives no more, in sentences."""
 
     def __repr__(self) -> str:
         way = f"{self['s'][-1]:.1f} m in {self.duration:.2f} s, {len(self)} steps"
@@ -216,6 +218,7 @@ class Drive:
             **({OTHERS: packed(self.others)[0]} if self.others is not None else {}),
             **({"lights": True} if self.lights else {}),
             **({"missed": self.missed} if self.missed else {}),
+            **({"limited": self.limited} if self.limited else {}),
         }
         buffer = io.BytesIO()
         with zipfile.ZipFile(buffer, "w") as archive:
@@ -271,6 +274,7 @@ def _checked(header: Any, arrays: Mapping[str, NDArray[Any]]) -> Drive:
         others=others,
         lights=bool(header.get("lights", False)),
         missed=strictly(tuple[str, ...], header.get("missed", ())),
+        limited=strictly(tuple[str, ...], header.get("limited", ())),
     )
 
 

@@ -254,6 +254,8 @@ def _driven(run: Run, despite_findings: bool = False) -> Run:
     begun, driver = time.perf_counter(), None
     try:
         driver = driver_of(setup.driver)  # a new driver for each road, so that nothing carries over
+        if setup.scenario:
+            _refuse_beyond_grip(run.road, run.world, run.seed)
         recording = recording_of(setup)
         tracks = None if recording is None else recording.on(run.road, run.world)
         drive = simulate(run.road, run.world, driver, run.seed, setup.simulator, setup.keep_driving, tracks)
@@ -272,6 +274,18 @@ def _driven(run: Run, despite_findings: bool = False) -> Run:
         driver_files=getattr(driver, "all_files", dict)(),
         seconds=replace(run.seconds, drive=time.perf_counter() - begun),
     )
+
+
+def _refuse_beyond_grip(road: Road, world: World, seed: int) -> None:
+    """Raises SceneError if a scene prescribes accelerations that the road does not give."""
+    if not world.scene.actors:
+        return
+    from roadgpt.traffic.rehearsal import rehearsed  # drives without others do not need it
+
+    others = rehearsed(road, world, seed)
+    beyond = [said for said, is_prescribed in others.limited.items() if is_prescribed] if others else []
+    if beyond:
+        raise SceneError(f"the scenario prescribes more than the road gives: {' and '.join(beyond)}")
 
 
 def judged(run: Run) -> Run:

@@ -7,7 +7,7 @@ greatest speed that its action says."""
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -30,11 +30,12 @@ from roadgpt.brief.scene import (
 )
 from roadgpt.errors import SceneError
 from roadgpt.road.road import GOAL
+from roadgpt.road.speed_profile import GRAVITY
 from roadgpt.traffic.actor import SIZES, STEP
 from roadgpt.traffic.following import HARDEST, JAM, idm, time_over
 from roadgpt.traffic.places import offset_of, stretch_of
 from roadgpt.traffic.traffic import Stage
-from roadgpt.traffic.way import GRIP, Way
+from roadgpt.traffic.way import GRIP, LEAST_GRIP, Way
 from roadgpt.traffic.ways import way_of
 
 ROLL = 4.0  # s, after which the first action begins whose begin the scene leaves open
@@ -71,6 +72,8 @@ PULL: Mapping[str, float] = {
 """The acceleration from rest in m/s^2. The bicycle of Euro NCAP's CBLA reaches 15 km/h within 3.5 m."""
 PATH, RUNS, RUNNING_PATH = 1.0, 6.0 / 3.6, 1.5
 """Euro NCAP's persons reach their speed within 1 m (CPNA), or 1.5 m if they run (CPFA)."""
+AHEAD = (0.0, 1.0, 2.0, 3.0)  # s, at which bends count for a movement sideways
+ROUNDED, STEEP = 0.05, 0.1  # m/s^2, by which limits are told, and from which pull on a grade that is
 QUICKEST = 10.0  # m/s^2, with which a person starts at most
 CROSSINGS = ("crossing", "crosswalk")
 IN_LANE = ("ahead", "behind", "oncoming")
@@ -165,12 +168,23 @@ def drawn(thing: Role | Action, rng: np.random.Generator) -> dict[str, float]:
     return found
 
 
-def _slides(deed: Deed, by: float) -> float:
-    """Returns how many seconds a movement sideways by some metres lasts."""
+class Limit(NamedTuple):
+    """An acceleration of an action that was more than is possible, in m/s^2."""
+
+    asked: float
+    most: float
+    where: str
+    """Sideways, or else nothing; and at which friction and grade."""
+    is_prescribed: bool
+    """Whether the scene says the number, and the road does not give it."""
+
+
+def _slides(deed: Deed, by: float, most: float) -> float:
+    """Returns how many seconds a movement sideways by some metres lasts, with at most so many m/s^2."""
     lasts = math.pi / 2 * abs(by) / deed.n.get("lateral", LATERAL[deed.what])
     if "duration" in deed.n and "lateral" not in deed.n:
         lasts = deed.n["duration"] * (0.5 if deed.what == "swerve" else 1.0)
-    return max(lasts, math.pi * math.sqrt(abs(by) / 2 / GRIP), 1e-3)
+    return max(lasts, math.pi * math.sqrt(abs(by) / 2 / most), 1e-3)
 
 
 def reach(time: float, speed: float, goal: float, pull: float) -> float:
@@ -225,6 +239,7 @@ class Act:
             if self.is_along and self.deeds[0].is_open:
                 self.cue["ttc"] = LAST
         self.v = v = 0.0 if stands or self.n.get("speed") == 0 else self.cruise
+        self.slide: Slide | None = None
         self.way, self.shift, self.t = path, 0.0, 0.0
         """From a station of its way, ``shift`` leads to that of the tested car's lane beside it; ``t`` is how
         far it is to the left of its way."""
@@ -247,7 +262,7 @@ class Act:
             if self.first == "cut_in" and {"time", "distance", "station"}.isdisjoint(self.cue):
                 self.held = (self.s - car.s, v - car.v)
         if not self.is_along or turns_off:
-            self.way = alike[0].way if alike else self._own_way()
+            self.way = alike[0].way if alike else replace(self._own_way(), friction=self.world.site.friction)
             assert self.way.meets is not None
             crossing = Meeting(self.way.meets[0], path.from_road(self.way.meets[1]))
             self.shift = crossing.car - crossing.own
@@ -268,9 +283,10 @@ class Act:
         self.pull, self.begun = CHANGE, 0
         self.shown = set[int]()
         """The numbers of the actions that it did while it was there."""
+        self.limited: dict[int, Limit] = {}
+        """What was limited of which action."""
         self.phases: list[Phase] = []
         self.clock, self.slid, self.slope = 0.0, 0.0, 0.0
-        self.slide: Slide | None = None
         self.signs: dict[int, float] = {}
         if self.copy and self.crosses and self.meeting:
             aside = math.sin(path.pose(self.meeting.car)[3] - self.way.pose(self.meeting.own)[3])
@@ -443,7 +459,7 @@ class Act:
             if self.first == "cut_in":
                 at -= rate * self._until_over_line(self.deeds[0], car.s, self._place(self.where, car.s))
         elif self.first == "overtake" and self.forward > 0:
-            closes = max(v - car.v, 0.0) * CLEAR * _slides(self.deeds[0], LANE)
+            closes = max(v - car.v, 0.0) * CLEAR * _slides(self.deeds[0], LANE, self._sideways(car.s))
             at = max(car.v, closes + STANDS) if self.where == "behind" else -2 * self.half - car.v
         elif self.where == "behind":
             return BEHIND * self.v
@@ -452,7 +468,9 @@ class Act:
         elif self.forward < 0:
             at = -rate * LAST
         else:
-            return max(HEADWAY * car.v, slower * self.rolls + slower**2 / 2 / EASY)
+            return max(
+                HEADWAY * car.v, slower * self.rolls + slower**2 / 2 / min(EASY, self._room(False, car.s))
+            )
         return at - rate * self.rolls
 
     def _across(self) -> float:
@@ -529,7 +547,7 @@ class Act:
         if not {"lateral", "duration"} & {*deed.n}:
             needed = math.pi / 2 * abs(by) * share * self.v / max(room, 1.0)
             deed.n["lateral"] = min(max(LATERAL[deed.what], needed), NUMBERS["lateral"].most)
-        lasts = _slides(deed, by)
+        lasts = _slides(deed, by, self._sideways(begins))
         needed = share * max(SHARPEST * math.pi / 2 * abs(by), self.v * lasts)
         if needed > room:
             raise SceneError(
@@ -687,7 +705,7 @@ class Act:
             return time_over(0.0, way, *self._starts(deed.n))
         by = self._leads_to(deed, s, t) - t
         over = min(max((abs(t) - half - self.size.width / 2) / max(abs(by), 1e-6), 0.0), 1.0)
-        return _slides(deed, by) * math.acos(1.0 - 2.0 * over) / math.pi
+        return _slides(deed, by, self._sideways(s)) * math.acos(1.0 - 2.0 * over) / math.pi
 
     def gap(self) -> tuple[float, float]:
         """Returns the distance to the tested car from bumper to bumper, and how fast it grows; of those in
@@ -702,7 +720,7 @@ class Act:
     def _starts(self, n: Mapping[str, float]) -> tuple[float, float]:
         """Returns the speed that it comes to from rest by the numbers of an action, and its acceleration."""
         goal = n.get("to", self.cruise)
-        return goal, abs(n.get("accel", self._pull(goal)))
+        return goal, min(abs(n.get("accel", self._pull(goal))), self._room(True, 0.0))
 
     def _pull(self, speed: float) -> float:
         """Returns with which acceleration it starts to move if it will have this speed."""
@@ -718,7 +736,9 @@ class Act:
         pull = CHANGE if accel is None else abs(accel)
         if what in LATERAL:
             place = self._leads_to(deed, self.along, self.t)
-            slides = _slides(deed, place - self.t)
+            most, by = self._sideways(self.s), abs(place - self.t)
+            slides = _slides(deed, by, most)
+            self._note(deed, by * (math.pi / _slides(deed, by, math.inf)) ** 2 / 2, most, " sideways")
             goal = to if to is not None else None if accel is None else FAST * (accel > 0)
             out = Phase(goal, pull, place, slides, until="there")
             back = out._replace(to=self.t)
@@ -786,7 +806,7 @@ class Act:
         """Returns after how many seconds the phase ends, as far as it can be seen now."""
         phase, left = self.phases[0], math.inf
         if phase.until == "speed":
-            left = abs(self.goal - self.v) / self.pull
+            left = abs(self.goal - self.v) / min(self.pull, self._room(self.goal > self.v, self.s))
         elif phase.until == "there":
             left = max(self.slide.lasts - self.slid, 0.0) / (self._pace() or 1e-9) if self.slide else 0.0
         elif phase.until == "passed":
@@ -814,21 +834,54 @@ class Act:
         assert self.slide is not None
         return min(1.0, abs(self.v) / (SHARPEST * self.slide.peak)) if self.slide.by else 1.0
 
+    def _room(self, is_faster: bool, s: float) -> float:
+        """The most in m/s^2 with which friction and grade let it become faster or slower at a place, beside
+        what its bend and its movement sideways take."""
+        aside = 0.0
+        if self.slide is not None:
+            share = math.cos(math.pi * self.slid / self.slide.lasts)
+            aside = abs(self.slide.by * share) * (math.pi / self.slide.lasts) ** 2 / 2
+        left, _, falls = self.way.room(s, self.v, aside)
+        return max(left - falls * self.forward * (1 if is_faster else -1), LEAST_GRIP)
+
+    def _sideways(self, s: float) -> float:
+        """The most in m/s^2 with which it moves sideways from a place on."""
+        ahead = (s + self.forward * self.v * time for time in AHEAD)
+        return min(GRIP, *(self.way.room(each, self.v)[1] for each in ahead))
+
+    def _note(self, deed: Deed, asked: float, most: float, where: str = "") -> None:
+        """Notes that an action asks for more than there is."""
+        if asked > most + ROUNDED:
+            _, _, falls = self.way.room(self.s, 0.0)
+            mu = self.world.site.friction
+            if self.way is self.path:
+                mu = self.world.friction_at(self.path.to_road(self.s))
+            if abs(falls) > STEEP:
+                where += f" on a grade of {100 * abs(math.tan(math.asin(falls / GRAVITY))):.0f} %"
+            given = not {"decel", "accel", "lateral"}.isdisjoint(deed.n) and bool(most < GRIP)
+            number = self.deeds.index(deed)
+            self.limited.setdefault(number, Limit(asked, most, f"{where}: friction is {mu:g}", given))
+
     def _drive(self, time: float) -> None:
         """Moves it by some seconds, within which nothing else begins."""
         if self.phases and self.phases[0].follows is not None:
             pull = idm(self.v, FAST, self.gap()[0], self.car.v, PULL["car"], CHANGE, self.phases[0].follows)
             self.goal, self.pull = (FAST if pull > 0 else 0.0), max(min(abs(pull), HARDEST), 1e-6)
-        before, speeds_up = self.v, min(time, abs(self.goal - self.v) / self.pull)
-        self.v += math.copysign(self.pull * speeds_up, self.goal - self.v)
+        pull = self.pull
+        if self.goal != self.v and (most := self._room(self.goal > self.v, self.s)) < pull:
+            if self.phases and self.phases[0].follows is None:
+                self._note(self.deeds[self.begun - 1], pull, most)
+            pull = most
+        before, speeds_up = self.v, min(time, abs(self.goal - self.v) / pull)
+        self.v += math.copysign(pull * speeds_up, self.goal - self.v)
         if speeds_up < time:
             self.v = self.goal
         stretch, fastest = self.way.bend(self.s, self.t, self.forward)
         self.v = min(self.v, fastest)
         if self.ahead is not None and self.v > 0:
-            gap, speed = self.ahead
-            safe = math.sqrt(speed**2 + 2 * EASY * max(gap - self.v * STEP - JAM / 2, 0.0))
-            if (safe := max(safe, before - FIRM * time, 0.0)) < self.v:
+            (gap, speed), most = self.ahead, self._room(False, self.s)
+            safe = math.sqrt(speed**2 + 2 * min(EASY, most) * max(gap - self.v * STEP - JAM / 2, 0.0))
+            if (safe := max(safe, before - min(FIRM, most) * time, 0.0)) < self.v:
                 self.v, speeds_up = safe, time
         gone = (before + self.v) / 2 * speeds_up + self.v * (time - speeds_up)
         self.s += self.forward * gone / stretch

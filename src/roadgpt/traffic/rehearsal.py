@@ -6,8 +6,8 @@ from itertools import count
 from typing import TYPE_CHECKING
 
 from roadgpt.road.road import GOAL, START
-from roadgpt.traffic.actor import STEP, Size, TestedCar
-from roadgpt.traffic.traffic import begin
+from roadgpt.traffic.actor import SIZES, STEP, Size, TestedCar
+from roadgpt.traffic.traffic import Traffic, begin
 from roadgpt.traffic.way import Way
 
 if TYPE_CHECKING:
@@ -16,8 +16,10 @@ if TYPE_CHECKING:
 LASTS, SLOWEST = 120.0, 1.0  # s, after which a drive among others that is slower in m/s is over
 
 
-def rehearsed(road: "Road", world: "World", seed: int, size: Size, ahead: float) -> dict[str, float]:
-    """Returns what of a scene happens, in words, and the station in metres of the tested car when it begins.
+def rehearsed(
+    road: "Road", world: "World", seed: int, size: Size = SIZES["car"], ahead: float = 0.0
+) -> Traffic | None:
+    """Returns the others after the rehearsal, who tell what happened; None if there are none.
 
     Args:
         road: the road that the tested car drives.
@@ -27,7 +29,7 @@ def rehearsed(road: "Road", world: "World", seed: int, size: Size, ahead: float)
         ahead: metres from its centre of gravity to the middle of its box."""
     traffic, way, v = begin(road, world, seed), Way.along(road, world), world.first_speed
     if traffic is None:
-        return {}
+        return None
     first = min(START, road.length / 2)
     for n in count():
         time = n * STEP
@@ -37,4 +39,4 @@ def rehearsed(road: "Road", world: "World", seed: int, size: Size, ahead: float)
         x, y, _, heading = way.pose(way.from_road(s) + ahead)
         t = float(world.profile_of(road).middle(s))
         traffic.advance(TestedCar(x, y, heading, v, s, t, size.length, size.width))
-    return traffic.happened
+    return traffic

@@ -131,6 +131,16 @@ class Traffic:
         return {did: s for found in each for did, s in found.items()}
 
     @property
+    def limited(self) -> dict[str, bool]:
+        """What the others did with less than their scene or their habits ask for, in sentences, each with
+        whether the road does not give what the scene prescribes."""
+        return {
+            said: is_it
+            for mover, _ in self._movers
+            for said, is_it in getattr(mover, "limited", dict[str, bool])().items()
+        }
+
+    @property
     def missed(self) -> tuple[str, ...]:
         """What of the scene has not happened so far, in sentences."""
         return tuple(

@@ -2,12 +2,13 @@
 
 import math
 from bisect import bisect_right
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
+from roadgpt.road.speed_profile import GRAVITY
 from roadgpt.traffic.actor import FloatArray
 
 if TYPE_CHECKING:
@@ -16,7 +17,9 @@ if TYPE_CHECKING:
 SPACING = 0.5  # m between the points of a way
 GRIP, EASE = 7.0, 3.0  # m/s^2: the most sideways in a bend, and with what actors slow down before it
 GAINS = 2.0  # m/s^2, with which they gain speed behind it
-SMOOTHED = 9  # points that a curvature is averaged over
+SIDEWAYS, SLOWING = 0.75, 0.66  # shares of the friction circle that both take at most
+SMOOTHED = 9  # points that a curvature and a slope are averaged over
+LEAST_GRIP = 0.1  # m/s^2, with which one counts where there is less; ours
 LEAST_STRETCH = 0.2  # lower bound of the metres beside a way per metre of it, on the inside of a bend
 
 
@@ -30,6 +33,8 @@ class Way:
     """Where the way meets the tested car's: the station along this way, and along the tested car's road."""
     road_stations: FloatArray | None = None
     """For the way along the tested car's own lane: the stations of the points along the tested car's road."""
+    friction: FloatArray | float = 1.0
+    """The friction, at each point where it is not the same everywhere."""
 
     @classmethod
     def through(cls, xyz: FloatArray, road_stations: FloatArray | None = None) -> Self:
@@ -42,7 +47,8 @@ class Way:
     def along(cls, road: "Road", world: "World") -> Self:
         """Returns the middle of the lane that the tested car is to follow."""
         s = np.linspace(0.0, road.length, max(int(road.length / SPACING), 1) + 1)
-        return cls.through(road.at(s, world.profile_of(road).middle(s)), s)
+        way = cls.through(road.at(s, world.profile_of(road).middle(s)), s)
+        return replace(way, friction=np.array([world.friction_at(each) for each in s.tolist()]))
 
     @cached_property
     def stations(self) -> FloatArray:
@@ -67,14 +73,19 @@ class Way:
 
     @cached_property
     def _rows(self) -> list[list[float]]:
-        """The points with the curvature of the way there, and the square of the greatest speed, along the way
-        and against it, from which one still slows down for the bends."""
+        """The points with the curvature of the way there, the square of the greatest speed, along the way and
+        against it, from which one still slows down for the bends, the radius of the friction circle and the
+        part of gravity that pulls back along the way, both in m/s^2."""
         s, bends = self.stations, np.gradient(self.points[:, 3], self.stations)
-        padded = np.pad(np.abs(bends), SMOOTHED // 2, mode="edge")
-        fastest = GRIP / np.maximum(np.convolve(padded, np.full(SMOOTHED, 1 / SMOOTHED), "valid"), 1e-6)
-        along = np.minimum.accumulate((fastest + 2 * EASE * s)[::-1])[::-1] - 2 * EASE * s
-        against = np.minimum.accumulate(fastest - 2 * EASE * s) + 2 * EASE * s
-        rows: list[list[float]] = np.column_stack([self.points, bends, along, against]).tolist()
+        slope = np.arctan(_smoothed(np.gradient(self.points[:, 2], s)))
+        circle, falls = GRAVITY * np.cos(slope) * self.friction, GRAVITY * np.sin(slope)
+        fastest = np.minimum(GRIP, SIDEWAYS * circle) / np.maximum(_smoothed(np.abs(bends)), 1e-6)
+        ease = np.clip(SLOWING * circle - np.abs(falls), LEAST_GRIP, EASE)
+        rise = np.concatenate([[0.0], np.cumsum(2 * ease[1:] * np.diff(s))])
+        along = np.minimum.accumulate((fastest + rise)[::-1])[::-1] - rise
+        against = np.minimum.accumulate(fastest - rise) + rise
+        columns = [self.points, bends, along, against, circle, falls]
+        rows: list[list[float]] = np.column_stack(columns).tolist()
         return rows
 
     @cached_property
@@ -108,13 +119,28 @@ class Way:
             return speed * seconds
         s = np.linspace(0.0, end, int(max(end, SPACING) / SPACING) + 2)
         square = np.minimum(np.interp(s, self.stations, self._fastest), speed) ** 2
-        pace = np.sqrt(np.minimum.accumulate(square - 2 * GAINS * s) + 2 * GAINS * s)
+        gains = 2 * min(GAINS, SLOWING * min(row[7] for row in self._rows))
+        pace = np.sqrt(np.minimum.accumulate(square - gains * s) + gains * s)
         times = np.concatenate([[0.0], np.cumsum((2 * np.diff(s) / (pace[1:] + pace[:-1]))[::-1])])
         return float(np.interp(seconds, times, end - s[::-1])) + speed * max(seconds - float(times[-1]), 0.0)
 
     def bend(self, s: float, t: float, forward: int) -> tuple[float, float]:
         """Returns how many metres somebody drives ``t`` metres to the left of the way per metre of it, and
         the greatest speed there in m/s, along the way or, with ``forward`` -1, against it."""
-        *_, bend, along, against = self._at(s)
+        bend, along, against = self._at(s)[4:7]
         stretch = max(1.0 - bend * t, LEAST_STRETCH) if 0.0 < s < self.length else 1.0
         return stretch, math.sqrt((along if forward > 0 else against) * stretch)
+
+    def room(self, s: float, v: float, aside: float = 0.0) -> tuple[float, float, float]:
+        """Returns what the friction circle leaves at a station in m/s^2 for a change of speed, beside what
+        the bend takes at a speed and ``aside``; what it leaves sideways beside the bend; and how much gravity
+        pulls back along the way."""
+        bend, _, _, circle, falls = self._at(s)[4:]
+        taken = v * v * abs(bend)
+        left = math.sqrt(max(circle**2 - (taken + aside) ** 2, 0.0))
+        return left, max(circle - taken, LEAST_GRIP), falls
+
+
+def _smoothed(values: FloatArray) -> FloatArray:
+    padded = np.pad(values, SMOOTHED // 2, mode="edge")
+    return np.convolve(padded, np.full(SMOOTHED, 1 / SMOOTHED), "valid")

@@ -41,7 +41,8 @@ def told(road: "Road", drive: "Drive", world: "World") -> tuple[Outcome, str]:
     box, prescribed, would = drive.car, world.first_speed, dict[str, float]()
     if drive.driver != ROBOT:
         size = Size(box.length, box.width, 2 * box.height)
-        would = rehearsed(road, world, drive.seed, size, box.ahead)
+        others = rehearsed(road, world, drive.seed, size, box.ahead)
+        would = others.happened if others else would
     never = [each for each in missed if _did(each) not in would]
     speed = f"{prescribed * 3.6:.0f} km/h"
     if never:

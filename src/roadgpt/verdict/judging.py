@@ -172,6 +172,7 @@ def judge(
     description += f"; {found.said}" if found else ""
     if cause == "collision" and contact is not None:
         s, (x, y), time = contact.at_s, contact.at_xy, contact.at_time
+    description += "".join(f"; {each}" for each in drive.limited)
     if cause is None and drive.missed:
         from roadgpt.verdict.happened import told
 

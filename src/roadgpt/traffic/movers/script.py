@@ -157,6 +157,17 @@ class Script:
         nowhere = (np.nan,) * 5
         return np.vstack([*(act.state() or nowhere for act in self._acts), self._parked])
 
+    def limited(self) -> dict[str, bool]:
+        """Returns what was done with less than its action asks for, in sentences, each with whether the road
+        does not give what the scene prescribes."""
+        return {
+            f"{_did(actor, act, n)} with at most {each.most:.1f} m/s2, not {each.asked:.1f}{each.where}": (
+                each.is_prescribed
+            )
+            for actor, act in zip(self.actors, self._acts, strict=False)
+            for n, each in sorted(act.limited.items())
+        }
+
     def missed(self) -> tuple[str, ...]:
         """Returns what of the scene has not begun so far, a sentence for each actor."""
         found = []
