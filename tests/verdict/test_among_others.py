@@ -82,10 +82,13 @@ def aside(time: Any) -> tuple[Any, Any, Any]:
         (straight(10, -2, 0, 9), "car", straight(60, -2, np.pi / 2, 0), ("front", "left"), True),  # it stands
         (straight(10, -2, 0, 9), "adult", straight(55, -6, np.pi / 2, 0.9), ("front", "left"), True),
         (straight(10, -2, 0, 9), "bicycle", straight(55, -12, np.pi / 2, 2.2), ("front", "left"), True),
-        # into its side, within its lane, and while it goes aside, partly outside; a corner is of the front
-        (straight(20, -2, 0, 9), "car", straight(18, -5, 0.1, 9.05), ("right", "front"), False),
+        # into its side, within its lane, and while it goes aside, partly outside; at more than 20 degrees a
+        # corner is of the front, and at less two sides meet, whichever corner touches first
+        (straight(20, -2, 0, 9), "car", straight(18, -6, 0.4, 9.8), ("right", "front"), False),
+        (straight(20, -2, 0, 9), "car", straight(18, -5, 0.1, 9.05), ("right", "left"), False),
+        (straight(20, -2, 0, 14), "car", straight(20.2, 1, -0.16, 14.2), ("left", "right"), False),
         (aside, "car", straight(22, 2.0, 0, 9), ("left", "right"), True),
-        (straight(20, -2, -0.1, 9.05), "car", straight(22, -5.2, 0, 9), ("front", "left"), True),
+        (straight(20, -2, -0.1, 9.05), "car", straight(22, -5.2, 0, 9), ("right", "left"), True),
         (straight(60, -2, np.pi, -9), "barrier", straight(90, -2, 0, 0), ("rear", "rear"), True),  # backwards
     ],
 )  # fmt: skip
@@ -237,9 +240,10 @@ def test_who_stays_behind_somebody_of_a_scene_has_passed_and_else_is_stuck() -> 
         drive = scene(stops, 130.0, ended="stuck", car_1=("car", other))
         return judge(ROAD, drive, WORLD.changed(scene=words))
 
-    passed = judged(3.0, -2, "car ahead v=0")
-    assert passed.outcome == "PASS"
-    assert "for 30 m and stayed 3.0 m behind car 1, which stands" in passed.description
+    for words in ("car ahead v=0", "car ahead v=0; oncoming light"):
+        passed = judged(3.0, -2, words)
+        assert passed.outcome == "PASS"
+        assert "for 30 m and stayed 3.0 m behind car 1, which stands" in passed.description
     for gap, side, words in ((12.0, -2, "car ahead v=0"), (3.0, 2, "car oncoming"), (3.0, -2, "light")):
         found = judged(gap, side, words)
         assert (found.outcome, found.cause) == ("FAIL", "stuck")

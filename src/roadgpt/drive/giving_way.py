@@ -18,6 +18,7 @@ import numpy as np
 from roadgpt.brief.scene import VEHICLES
 from roadgpt.compiled import compiled
 from roadgpt.drive.driving_line import FRONT, DrivingLine, FloatArray, turning_speed
+from roadgpt.drive.path_ahead import HALF_WIDTH, SPARE
 from roadgpt.drive.view import Other, View
 from roadgpt.network import legs_of, network_of
 from roadgpt.network.lanes import Lanes, lanes_of
@@ -76,7 +77,7 @@ class GivingWay:
             if leg.road == before.road:
                 begin, _, end = road.starts[k : k + 3]
                 self._changes.append((begin, end, line.offset[line.place(end)[0]]))
-        self._beside = 0.0
+        self._line, self._beside = line, 0.0
         near, far = CROSSWALK[0], sum(CROSSWALK)
         begins = [way.start - far for way in road.passages if crossed[way.arrival]]
         begins += [way.end + near for way in road.passages if crossed[way.departure]]
@@ -135,8 +136,12 @@ class GivingWay:
                 gap, closes = s - other.length / 2 - view.s - FRONT, max(other.speed - view.speed, 0.0)
                 if other.kind not in VEHICLES or abs(t - offset) > ASIDE or gap > HORIZON:
                     continue
-                if gap > 0.0:
-                    least = min(least, idm(view.speed, math.inf, gap, other.speed, PULL, EASY, HEADWAY))
+                if gap > 0.0:  # who is passed before the path comes into its lane is not followed
+                    met = s + other.length / 2 + other.speed * gap / max(view.speed - other.speed, 1e-3)
+                    aside = abs(t - self._line.offset[self._line.place(min(met, end))[0]])
+                    if aside < other.width / 2 + HALF_WIDTH + SPARE:
+                        follows = idm(view.speed, math.inf, gap, other.speed, PULL, EASY, HEADWAY)
+                        least = min(least, follows)
                 elif gap + LENGTH + other.length > -JAM - EASY * closes:
                     is_beside = True
                     if self._beside < (TURN if max(other.speed, view.speed) < STANDING else PATIENCE):

@@ -88,7 +88,9 @@ def build_route(design: Design, world: World) -> Route:
         network, passed, shifts = grown.builder.network(), grown.passed, grown.shifts
     if design.left_hand:
         network, shifts = network.mirrored, {road: -shift for road, shift in shifts.items()}
-    lane = world.scene.lane_driven(design.left_hand)
+    changes = any(getattr(place, "kind", None) == "lane_change" for place in design.junctions)
+    # where the words say how the route changes lanes, they say in which one it begins
+    lane = world.scene.lane if changes else world.scene.lane_driven(design.left_hand)
     return Route.along(network, legs_along(network, passed, shifts, lane) if passed else [])
 
 

@@ -21,18 +21,20 @@ from roadgpt.brief.scene import (
     MOVING,
     NUMBERS,
     ON_ITS_WAY,
+    SPOTS,
     USUAL_BRAKING,
     USUAL_SPEEDS,
     Action,
     Role,
     What,
     Where,
+    one_of,
 )
 from roadgpt.errors import SceneError
 from roadgpt.road.road import GOAL
 from roadgpt.road.speed_profile import GRAVITY
 from roadgpt.traffic.actor import SIZES, STEP
-from roadgpt.traffic.following import HARDEST, JAM, idm, time_over
+from roadgpt.traffic.following import AFTER_CONTACT, HARDEST, JAM, idm, time_over
 from roadgpt.traffic.places import offset_of, stretch_of
 from roadgpt.traffic.traffic import Stage
 from roadgpt.traffic.way import GRIP, LEAST_GRIP, Way
@@ -41,6 +43,7 @@ from roadgpt.traffic.ways import way_of
 ROLL = 4.0  # s, after which the first action begins whose begin the scene leaves open
 SETTLED = 1.0  # s, the same for who is in the tested car's lane at a distance that the scene says
 LAST = 2.5  # s before a meeting, from which on somebody who is moving no longer matches the tested car
+GOES = 2.0  # s before its own meeting, from which on it goes on also if the tested car waits for it
 CATCH_UP = 1.0  # s, in which most of the way that is missing before a meeting is made good
 MATCHED = 3.0  # m/s^2, with which somebody matches the tested car
 SHARPEST = 2.0  # sideways nobody moves faster than the speed ahead divided by this
@@ -57,6 +60,7 @@ APART = 0.05  # m, between who leaves a lane and who stands there
 CLEAR = 0.6  # share of a change of lanes after which one is clear of a car in the lane that is left
 HEADWAY = 2.0  # s, of who is ahead
 BEHIND = 1.5  # s, of who is behind, and of several alike one behind another
+LEAD_IN = 50.0  # m before its begin, from which on somebody who comes from behind is on the road
 INTO = 1.0  # s of headway with which one turns in or merges ahead of the tested car
 STANDS = 2.0  # m between several alike that stand
 ONCOMING = 40.0  # m between several alike that come towards the tested car
@@ -244,6 +248,8 @@ class Act:
         """From a station of its way, ``shift`` leads to that of the tested car's lane beside it; ``t`` is how
         far it is to the left of its way."""
         self.meeting: Meeting | None = None
+        self.faces = self.forward < 0 and bool(self.first in HEAD_ON or {"impact", "overlap"} & {*self.n})
+        """Whether it comes towards the tested car in its lane, or will."""
         self.held: tuple[float, float] | None = None
         """How far its middle is ahead of the tested car's at first, and how much faster it is, if it keeps to
         that until its first action."""
@@ -258,7 +264,6 @@ class Act:
         if self.is_along:
             self.s = self._beside()
             self.t = self._aside(self.s)
-            self.meeting = self._head_on()
             if self.first == "cut_in" and {"time", "distance", "station"}.isdisjoint(self.cue):
                 self.held = (self.s - car.s, v - car.v)
         if not self.is_along or turns_off:
@@ -277,7 +282,13 @@ class Act:
         self.uncovers = False
         """Whether it leaves its lane in time before those who stand there."""
         self.v = v
+        self.comes = self.way.road_stations is not None and v > 0 and self.forward > 0
+        """Whether it may come from before the begin of the road."""
         self.put(self.s)
+        self.minds = self.where == "behind" and "overtake" in whats
+        """Whether it drives behind the tested car as behind others until it has left its lane."""
+        self.hits: bool | None = None
+        """Whether it hit the tested car from behind when it first touched it; None if it has not."""
         self.ahead: tuple[float, float] | None = None
         """How far it is to who is ahead of it in its lane, in metres, and how fast that moves along it."""
         self.pull, self.begun = CHANGE, 0
@@ -295,8 +306,26 @@ class Act:
     def put(self, s: float) -> None:
         """Puts it at a station of its way, with a speed that is possible there."""
         self.s = s
-        self.meeting = self._head_on() if self.is_along and self.way is self.path else self.meeting
+        self.held = self.held and (s - self.car.s, self.held[1])
         self.goal = self.v = min(self.v, self.way.bend(s, self.t, self.forward)[1])
+
+    def part(self, other: "Act") -> None:
+        """Moves it away from another in whose place it would be: in its lane away from the tested car, on a
+        way of its own back, or aside if it stands there. Raises SceneError if the scene says where both are.
+        """
+        room = (self.size.length + other.size.length) / 2 + STANDS + BEHIND * self.v
+        if not self.is_along and self.v == 0:
+            self.t += math.copysign(self.size.width + 0.5, self.t)
+        elif not self.is_along and self.meeting:
+            self.meeting = self.meeting._replace(own=self.meeting.own - room)
+            self.put(self.s - room)
+        elif not self.is_placed:
+            self.put(other.along + math.copysign(room, self.s - self.car.s))
+        else:
+            raise SceneError(
+                f"{one_of(self.kind)} {SPOTS[self.where].said} would be in {one_of(other.kind)} "
+                f"{SPOTS[other.where].said}; give one of them another place"
+            )
 
     def _deed(self, action: Action, n: dict[str, float]) -> Deed:
         if action.at and not action.at.what:
@@ -344,6 +373,9 @@ class Act:
             refuse("cannot be where it meets the tested car in time; give another place, or more speed")
         if self.held and wait == math.inf and first and not first.event:
             refuse("never comes to where it is to act; give another gap or speed")
+        half = (self.size.width + self.car.width) / 2
+        if self.is_along and abs(self.along - self.car.s) < self.half and abs(self.t) < half:
+            refuse("would be in the tested car at the start; give another gap")
         moves = self.cruise > 0
         for deed in self.deeds:
             moves = moves or deed.what in ("speed", "overtake", "pull_out")
@@ -403,16 +435,6 @@ class Act:
         eta = (found.car - car.s - car.length / 2) / max(car.v, 1.0)
         return found, found.own - self.way.before(found.own, self.v, eta)
 
-    def _head_on(self) -> Meeting | None:
-        """Returns where somebody who comes towards the tested car in its lane meets it."""
-        comes = self.first in HEAD_ON or {"impact", "overlap"} & {*self.n}
-        if self.forward > 0 or not comes:
-            return None
-        gap = self.s - self.car.s - self.half
-        share = self.car.v / max(self.car.v + self.cruise, 0.1)
-        place = self.car.s + self.car.length / 2 + gap * share
-        return Meeting(place + self.size.length / 2, place)
-
     def _beside(self) -> float:
         """Returns the station along the tested car's lane where somebody is at first who is along it."""
         n, car, v, length = self.n, self.car, self.v, self.size.length
@@ -462,15 +484,14 @@ class Act:
             closes = max(v - car.v, 0.0) * CLEAR * _slides(self.deeds[0], LANE, self._sideways(car.s))
             at = max(car.v, closes + STANDS) if self.where == "behind" else -2 * self.half - car.v
         elif self.where == "behind":
-            return BEHIND * self.v
+            return max(BEHIND * self.v, STANDS)
         elif self.where in ("lane", "far"):
             return 5.0 - self.half + slower * self.rolls
         elif self.forward < 0:
             at = -rate * LAST
         else:
-            return max(
-                HEADWAY * car.v, slower * self.rolls + slower**2 / 2 / min(EASY, self._room(False, car.s))
-            )
+            stops = slower**2 / 2 / min(EASY, self._room(False, car.s))
+            return max(HEADWAY * car.v, slower * self.rolls + stops, STANDS)
         return at - rate * self.rolls
 
     def _across(self) -> float:
@@ -496,6 +517,8 @@ class Act:
     def _place(self, where: Where, s: float, side: Side | None = None) -> float:
         if side is None and self.side in ("left", "right"):
             side = self.side
+        if where == "beside" and "away" in self.n:
+            return self.n["away"] * {"left": 1, "right": -1}.get(str(side), self.kerb)
         place = self.path.to_road(min(max(s, 0.0), self.path.length)), self.road, self.world, self.size.width
         try:
             return offset_of(where, side, *place)
@@ -572,7 +595,8 @@ class Act:
     def state(self) -> tuple[float, ...] | None:
         """Returns its state; None while it is not there: its box is not yet, or no longer, on its way."""
         half = 0.0 if self.way.road_stations is None else self.size.length / 2 - 0.01
-        if not half <= self.s <= self.way.length - half:
+        first = -LEAD_IN if self.comes else half
+        if not first <= self.s <= self.way.length - half:
             return None
         x, y, z, heading = self.way.pose(self.s, self.t)
         turned = math.atan(self.slope)
@@ -582,9 +606,12 @@ class Act:
     def move(self, time: float, car: Car) -> None:
         """Moves it from a time to STEP later."""
         self.time, self.car, left = time, car, STEP
-        if not self.begun:
+        if self.hits:
+            self.goal, self.pull, self.phases = 0.0, AFTER_CONTACT, []
+            self.v = min(self.v, max(car.v, 0.0))
+        elif not self.begun:
             self._match()
-        while self.begun < len(self.deeds):
+        while self.begun < len(self.deeds) and not self.hits:
             deed = self.deeds[self.begun]
             wait = max(self.wait(deed), 0.0)
             if wait >= left:
@@ -624,14 +651,19 @@ class Act:
             self.goal, self.pull = min(max(wanted, self.cruise / 2), FAST), MATCHED
         elif self.matches and self.meeting:
             eta, self.goal, self.pull = self._eta(), self.cruise, MATCHED
-            self.matches = eta > LAST
+            way = self.meeting.own - self.s
+            self.matches = eta > LAST and way > self._planned(GOES)
             if self.matches:
-                missing = self.forward * (self.meeting.own - self.s) - self._planned(eta)
+                missing = way - self._planned(eta)
                 faster = math.copysign(min(abs(missing) / CATCH_UP, math.sqrt(4.0 * abs(missing))), missing)
-                self.goal = min(max(self.cruise + faster, 0.0), 1.5 * self.cruise)
+                least = 0.0 if self.state() is None else 0.5  # it does not wait for a car that waits for it
+                self.goal = min(max(self.cruise + faster, least * self.cruise), 1.5 * self.cruise)
 
     def _eta(self) -> float:
-        """The seconds until the tested car is where they meet, at its speed now."""
+        """The seconds until the tested car is where they meet, as fast as both are now."""
+        if self.faces:
+            gap, rate = self.gap()
+            return gap / max(-rate, 1e-3)
         assert self.meeting is not None
         return (self.meeting.car - self.car.s - self.car.length / 2) / max(self.car.v, 1e-3)
 
@@ -657,7 +689,8 @@ class Act:
         if "station" in n:
             left = self.forward * (n["station"] - self.along)
             return left / max(abs(self.v), 1e-3) if left > 0 else 0.0
-        if "ttc" in n and self.meeting:
+        meets = self.faces or self.meeting
+        if "ttc" in n and meets:
             return self._eta() - n["ttc"]
         if {"gap", "headway", "ttc"} & {*n}:
             return self._until(deed)
@@ -670,7 +703,7 @@ class Act:
         if self.meeting and self.waits:
             way = self.forward * (self.meeting.own - self.s)
             return self._eta() - time_over(0.0, max(way, 0.0), *self._starts(n))
-        return self._eta() - LAST if self.meeting else self.rolls - self.time
+        return self._eta() - LAST if meets else self.rolls - self.time
 
     def _until(self, deed: Deed) -> float:
         """Returns in how many seconds a gap, a headway or a time to collision is reached, from either side;

@@ -61,6 +61,7 @@ SPRINT = 4.0  # m/s^2, with which the tested car may speed up before it comes
 AGAINST_MUST = 6.0  # m/s^2: a tested car that would have to brake harder before a line counts as beyond it
 SOON = 4.0  # s, before which a tested car with priority has its way reserved
 STANDING = 0.3  # m/s
+ALONG = 0.7  # cosine of the angle to the tested car, above which a vehicle hits it from behind
 AFTER_CONTACT = 6.0  # m/s^2, with which a vehicle stops that the tested car has touched
 LET_IN = 10.0  # s, that somebody stands at the end of a lane before one vehicle lets it in
 ASKS = -1e9  # stands for the speed of an entry of somebody who asks to be let in
@@ -587,6 +588,9 @@ def step(crowd: Crowd, bodies: FloatArray, room: FloatArray, tick: int) -> None:
             dx, dy = other[0] - one[0], other[1] - one[1]
             if touch(dx, dy, one[3], size[LENGTH], size[WIDTH], other[3], its[LENGTH], its[WIDTH]):
                 whole[i, STATE] = STANDS_HIT
+                is_behind = dx * math.cos(one[3]) + dy * math.sin(one[3]) > size[LENGTH] / 2.0
+                if is_behind and math.cos(other[3] - one[3]) > ALONG:  # it does not drive through the car
+                    size[V] = min(size[V], max(its[V], 0.0))
         if whole[i, STATE] == STANDS_HIT:
             numbers[i, A_NEXT] = max(-AFTER_CONTACT, -numbers[i, V] / STEP)
         else:

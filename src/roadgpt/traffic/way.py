@@ -106,9 +106,12 @@ class Way:
 
     def pose(self, s: float, t: float = 0.0) -> tuple[float, float, float, float]:
         """Returns x, y, z and heading at a station, ``t`` metres to the left of the way. Before its begin
-        and after its end it goes straight on."""
+        and after its end it goes straight on, up or down as there."""
         x, y, z, heading, *_ = self._at(s)
         beyond = s - min(max(s, 0.0), self.length)
+        if beyond:
+            inside = self._at(s - beyond - math.copysign(SPACING, beyond))
+            z += abs(beyond) / SPACING * (z - inside[2])
         cos, sin = math.cos(heading), math.sin(heading)
         return x + beyond * cos - t * sin, y + beyond * sin + t * cos, z, heading
 

@@ -28,7 +28,8 @@ FloatArray = NDArray[np.float64]
 
 TOUCH = 1e-3  # m; positions of tracks are rounded to it
 SLACK = 1.0  # m, by which the car's way between two samples of a track may differ from a straight line
-CORNER = 0.02  # m, within which a corner belongs to the place of contact, and a place to the front or rear
+CORNER = 0.02  # m, within which a corner belongs to the place of contact
+PARALLEL = np.radians(20.0)  # two sides at a smaller angle meet flat; else a corner meets a side
 OUTLINE = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1)])
 
 
@@ -149,7 +150,11 @@ def _described(drive: "Drive", step: int, number: int, share: float) -> Incident
         if (np.abs(turned(point - place[1 - mine], -heading[1 - mine])) <= half[1 - mine] + CORNER).all()
     ]
     spot = np.mean(inside, axis=0) if inside else place.mean(axis=0)
-    faces = [_face(turned(spot - at, -way), size) for at, way, size in zip(place, heading, half, strict=True)]
+    away = place[1] - place[0]
+    apart = separation(away, heading[0], heading[1], *half)
+    faces = [
+        _face(n, away * (1 - 2 * n), heading, apart, turned(spot - place[n], -heading[n])) for n in (0, 1)
+    ]
     speed, its = float(abs(between(drive["speed"]))), float(other[SPEED])
     velocity = turned(np.array([between(drive["vx"]), between(drive["vy"])]), heading[0])
     impact = velocity - its * np.array([np.cos(heading[1]), np.sin(heading[1])])
@@ -177,12 +182,19 @@ def _described(drive: "Drive", step: int, number: int, share: float) -> Incident
     )
 
 
-def _face(spot: FloatArray, half: FloatArray) -> Face:
-    """Returns on which side of a box a place is; as with nuPlan, a corner is of the front or the rear."""
-    to_end, to_flank = half - np.abs(spot)
-    if to_end <= max(to_flank, CORNER):
+def _face(mine: int, away: FloatArray, heading: FloatArray, apart: FloatArray, spot: FloatArray) -> Face:
+    """Returns with which side box ``mine``, 0 or 1, met the other, which is ``away`` from it: that along the
+    line on which both are ``apart`` the most. A corner that meets a side is one of the front or the rear, as
+    with nuPlan; ``spot`` is where it is."""
+    flat, is_across = divmod(int(apart.argmax()), 2)
+    ahead, left = turned(away, -heading[mine])
+    turn = (heading[mine] - heading[flat] + np.pi / 4) % np.pi - np.pi / 4  # -45 to 135 degrees
+    is_crossed = turn > np.pi / 4
+    if abs(turn - is_crossed * np.pi / 2) > PARALLEL:
         return "front" if spot[0] > 0 else "rear"
-    return "left" if spot[1] > 0 else "right"
+    if is_across != is_crossed:
+        return "left" if left > 0 else "right"
+    return "front" if ahead > 0 else "rear"
 
 
 def turned(points: FloatArray, angle: FloatArray | float) -> FloatArray:

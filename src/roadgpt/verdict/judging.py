@@ -306,7 +306,7 @@ def far_beyond(beyond: float) -> str:
 
 def _behind(road: "Road", drive: "Drive", world: "World") -> str:
     """Returns in words behind whom of a scene the car stayed at the end; empty if the way was free."""
-    if drive.others is None or not world.scene.actors or world.scene.has_flow:
+    if drive.others is None or not drive.others.actors or not world.scene.actors:
         return ""
     from roadgpt.verdict.incidents import FREE
     from roadgpt.verdict.measures import measure

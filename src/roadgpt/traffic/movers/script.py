@@ -10,6 +10,8 @@ from roadgpt.brief.scene import DOINGS, HEAD_ON, LEAVES, MOST_MORE
 from roadgpt.road.road import START
 from roadgpt.traffic.acting import BEHIND, ONCOMING, STANDS, Act, Car
 from roadgpt.traffic.actor import HEADING, SIZES, SPEED, STILL, Actor, FloatArray, TestedCar, corners
+from roadgpt.traffic.boxes import touch
+from roadgpt.traffic.following import ALONG
 from roadgpt.traffic.places import parked_rows
 from roadgpt.traffic.traffic import LATE, NEVER, Stage
 from roadgpt.traffic.way import SPACING, Way
@@ -87,6 +89,11 @@ class Script:
         nearer = min(max(late, default=0.0), spare)
         for act in onto if nearer > 0 else ():  # so that what they begin happens on a short road, too
             act.put(act.s - nearer)
+        placed = list[Act]()
+        for act in sorted(acts, key=lambda each: not each.is_placed):
+            while inside := next((each for each in placed if _touch(act, each)), None):
+                act.part(inside)
+            placed.append(act)
         for act in acts:
             act.check()
 
@@ -104,10 +111,11 @@ class Script:
 
     def move(self, time: float, car: TestedCar, bodies: FloatArray) -> FloatArray:
         """Returns the states of all actors STEP after ``time``. They slow down for others ahead in their
-        lane, but not for the tested car, which is to see to that itself."""
+        lane, but not for the tested car, unless they overtake it. Who hits it from behind stops there."""
         seen = self._seen(car)
-        self._look(bodies)
+        self._look(bodies, car)
         for act in self._acts:
+            _meet(act, car)
             act.move(time, seen)
         for actor, act in zip(self.actors, self._acts, strict=False):
             self.happened |= {
@@ -115,15 +123,16 @@ class Script:
             }
         return self._states()
 
-    def _look(self, bodies: FloatArray) -> None:
+    def _look(self, bodies: FloatArray, car: TestedCar) -> None:
         """Tells everybody along the tested car's lane how far it is to who is ahead of it there, and how fast
         that moves."""
         for act in self._acts:
             act.ahead = None
         drivers = [act for act in self._acts if act.way is self._way and act.v > 0]
         states = [(*state, *act.size[:2]) for act in self._acts if (state := act.state()) is not None]
-        rows = np.vstack([np.array(states).reshape(-1, 7), bodies])
-        if not drivers or len(rows) < 2:
+        own = (car.x, car.y, 0.0, car.heading, car.speed, car.length, car.width)
+        rows = np.vstack([np.array(states).reshape(-1, 7), bodies, own])
+        if not drivers:
             return
         points, stations = self._way.points, self._way.stations
         away = (points[:, None, 0] - rows[None, :, 0]) ** 2 + (points[:, None, 1] - rows[None, :, 1]) ** 2
@@ -149,6 +158,7 @@ class Script:
             is_ahead = (
                 is_on & (apart > SPACING) & (gap < IN_SIGHT) & (near < wide + act.size.width / 2 + BESIDE)
             )
+            is_ahead[-1] &= act.minds
             if is_ahead.any():
                 first = int(np.where(is_ahead, gap, np.inf).argmin())
                 act.ahead = float(gap[first]), max(act.forward * float(speed[first]), 0.0)
@@ -190,3 +200,19 @@ def _did(actor: Actor, act: Act, number: int) -> str:
     """Returns in words that somebody does one of its actions."""
     whats = [deed.what for deed in act.deeds[: number + 1]]
     return f"{actor.name} {DOINGS[whats[-1]].said}{' again' * (whats.count(whats[-1]) - 1)}"
+
+
+def _touch(act: Act, other: Act) -> bool:
+    """Returns whether two would be in one place at first."""
+    (x, y, _, heading), (x_2, y_2, _, heading_2) = (each.way.pose(each.s, each.t) for each in (act, other))
+    return bool(touch(x_2 - x, y_2 - y, heading, *act.size[:2], heading_2, *other.size[:2]))
+
+
+def _meet(act: Act, car: TestedCar) -> None:
+    """Tells somebody who touches the tested car for the first time whether it hits it from behind."""
+    if act.hits is not None or (state := act.state()) is None:
+        return
+    dx, dy, heading = car.x - state[0], car.y - state[1], state[HEADING]
+    if touch(dx, dy, heading, *act.size[:2], car.heading, car.length, car.width):
+        is_ahead = dx * math.cos(heading) + dy * math.sin(heading) > act.size.length / 2
+        act.hits = is_ahead and act.v > 0 and act.slide is None and math.cos(car.heading - heading) > ALONG
