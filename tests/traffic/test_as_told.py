@@ -108,9 +108,7 @@ def test_a_wrong_way_driver_is_as_fast_as_told() -> None:
     assert np.nanmax(speed) == pytest.approx(25.0, abs=0.5)
 
 
-@pytest.mark.parametrize(
-    "scene", ["car behind gap=30 v=15: keep", "car ahead gap=3 v=0; car behind gap=10 v=60: keep"]
-)
+@pytest.mark.parametrize("scene", ["car behind gap=30 v=15", "car ahead gap=3 v=0; car behind gap=10 v=60"])
 def test_who_comes_from_behind_hits_the_rear_of_a_car_that_stands_and_stops_there(scene: str) -> None:
     run = drive(f"straight 100 && ego v=0 robot; {scene}: keep", "robot")
     assert run.verdict is not None

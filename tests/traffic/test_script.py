@@ -161,7 +161,9 @@ def test_before_its_trigger_one_matches_a_tested_car_that_changes_its_speed() ->
         return 14.0 - min(time, 3.0)
 
     head_on = show("ego v=50; car oncoming v=50 gap=250 impact=50", speed=slower, lasts=12.0)
-    assert head_on.states[0, 0, 4] == pytest.approx(50 / 3.6)  # they meet anyway: it keeps its speed
+    assert head_on.states[0, 0, 4] == pytest.approx(
+        50 / 3.6, abs=1e-3
+    )  # they meet anyway: it keeps its speed
     assert np.ptp(head_on.states[:, 0, 4]) < 0.01
     cut = show("ego v=50; car lane left v=40 : cut_in gap=15", speed=slower)
     over = int(np.flatnonzero(cut.left(0) - cut.actors[0].size.width / 2 <= 3.5 / 2)[0])
@@ -200,7 +202,7 @@ SCENES = (
     "van lane left: cut_in accel=-2 for=3; car x2 behind: change_lane left, drift; car ahead: cut_out",
     "car lane left dv=-10..10: open_gap, stop 4 for=1, reverse; cones x3 beside right; animal crossing left",
     "car oncoming: wrong_way; van oncoming: drift; car oncoming gap=400: overtake; adult x2 crossing right",
-    "car parked right: pull_out; bus beside right: pull_out; car ahead: wrong_way; car ahead gap=90: reverse",
+    "car parked right: pull_out; bus beside right: pull_out; car ahead: wrong_way; car ahead gap=99: reverse",
 )
 
 

@@ -60,7 +60,7 @@ APART = 0.05  # m, between who leaves a lane and who stands there
 CLEAR = 0.6  # share of a change of lanes after which one is clear of a car in the lane that is left
 HEADWAY = 2.0  # s, of who is ahead
 BEHIND = 1.5  # s, of who is behind, and of several alike one behind another
-LEAD_IN = 50.0  # m before its begin, from which on somebody who comes from behind is on the road
+BEYOND = 50.0  # m before the begin and behind the end of the road, where who drives along it is still there
 INTO = 1.0  # s of headway with which one turns in or merges ahead of the tested car
 STANDS = 2.0  # m between several alike that stand
 ONCOMING = 40.0  # m between several alike that come towards the tested car
@@ -282,8 +282,9 @@ class Act:
         self.uncovers = False
         """Whether it leaves its lane in time before those who stand there."""
         self.v = v
-        self.comes = self.way.road_stations is not None and v > 0 and self.forward > 0
-        """Whether it may come from before the begin of the road."""
+        on_road = BEYOND if v > 0 else 0.01 - self.size.length / 2
+        self.beyond = 0.0 if self.way.road_stations is None else on_road
+        """How far before the begin and behind the end of its way it is there."""
         self.put(self.s)
         self.minds = self.where == "behind" and "overtake" in whats
         """Whether it drives behind the tested car as behind others until it has left its lane."""
@@ -594,9 +595,7 @@ class Act:
 
     def state(self) -> tuple[float, ...] | None:
         """Returns its state; None while it is not there: its box is not yet, or no longer, on its way."""
-        half = 0.0 if self.way.road_stations is None else self.size.length / 2 - 0.01
-        first = -LEAD_IN if self.comes else half
-        if not first <= self.s <= self.way.length - half:
+        if not -self.beyond <= self.s <= self.way.length + self.beyond:
             return None
         x, y, z, heading = self.way.pose(self.s, self.t)
         turned = math.atan(self.slope)
@@ -690,8 +689,11 @@ class Act:
             left = self.forward * (n["station"] - self.along)
             return left / max(abs(self.v), 1e-3) if left > 0 else 0.0
         meets = self.faces or self.meeting
+        soon = self._eta() if meets else math.inf
+        if self.meeting and self.v > 0 and not self.is_along:  # it goes on also if the tested car waits
+            soon = min(soon, (self.meeting.own - self.s) / self.v)
         if "ttc" in n and meets:
-            return self._eta() - n["ttc"]
+            return soon - n["ttc"]
         if {"gap", "headway", "ttc"} & {*n}:
             return self._until(deed)
         before = 0.0 if not self.phases else self._left() if len(self.phases) == 1 else math.inf
@@ -703,7 +705,7 @@ class Act:
         if self.meeting and self.waits:
             way = self.forward * (self.meeting.own - self.s)
             return self._eta() - time_over(0.0, max(way, 0.0), *self._starts(n))
-        return self._eta() - LAST if meets else self.rolls - self.time
+        return soon - LAST if meets else self.rolls - self.time
 
     def _until(self, deed: Deed) -> float:
         """Returns in how many seconds a gap, a headway or a time to collision is reached, from either side;
@@ -841,7 +843,9 @@ class Act:
         if phase.until == "speed":
             left = abs(self.goal - self.v) / min(self.pull, self._room(self.goal > self.v, self.s))
         elif phase.until == "there":
-            left = max(self.slide.lasts - self.slid, 0.0) / (self._pace() or 1e-9) if self.slide else 0.0
+            left = (
+                max(self.slide.lasts - self.slid, 0.0) / (self._pace(self.v) or 1e-9) if self.slide else 0.0
+            )
         elif phase.until == "passed":
             left = (PASSED - (self.along - self.car.s - self.half)) / max(self.v - self.car.v, 1e-9)
         elif phase.until == "met" and self.meeting:
@@ -862,10 +866,10 @@ class Act:
                 del self.phases[0]
                 self._enter()
 
-    def _pace(self) -> float:
+    def _pace(self, v: float) -> float:
         """How fast the time of a movement sideways passes: slower for who is slow, not at all at rest."""
         assert self.slide is not None
-        return min(1.0, abs(self.v) / (SHARPEST * self.slide.peak)) if self.slide.by else 1.0
+        return min(1.0, abs(v) / (SHARPEST * self.slide.peak)) if self.slide.by else 1.0
 
     def _room(self, is_faster: bool, s: float) -> float:
         """The most in m/s^2 with which friction and grade let it become faster or slower at a place, beside
@@ -920,7 +924,7 @@ class Act:
         self.s += self.forward * gone / stretch
         if self.slide is None:
             return
-        self.slid += self._pace() * time
+        self.slid += self._pace(gone / max(time, 1e-9)) * time
         share = self.slid / self.slide.lasts
         if share >= 1.0 - 1e-9:
             self.t, self.slope, self.slide = self.slide.begin + self.slide.by, 0.0, None
