@@ -64,6 +64,8 @@ class Measured:
         way = near[:, 2] - near[:, 0]
         way /= np.hypot(*way.T)[:, None]
         away = places - near[:, 1]
+        beyond = (s <= 0.0) | (s >= self.path.length)  # who drives on beyond the road
+        s += np.where(beyond, way[:, 0] * away[:, 0] + way[:, 1] * away[:, 1], 0.0)
         return s, way[:, 0] * away[:, 1] - way[:, 1] * away[:, 0]
 
     def size(self, who: int) -> tuple[float, float]:
