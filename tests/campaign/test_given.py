@@ -22,9 +22,9 @@ pytestmark = pytest.mark.usefixtures("no_workers")
 CROSSING = {
     "starting_point": [125, 20, 0],
     "theta": 90,
-    "road_segment1": {"distance": 40, "direction": "straight", "incline": 0, "turn_degrees": 0},
+    "road_segment1": {"distance": 60, "direction": "straight", "incline": 0, "turn_degrees": 0},
     "junction1": {"after": 1, "kind": "crossroads", "take": "left", "control": "stop"},
-    "road_segment2": {"distance": 40, "direction": "straight", "incline": 0, "turn_degrees": 0},
+    "road_segment2": {"distance": 60, "direction": "straight", "incline": 0, "turn_degrees": 0},
 }
 STRAIGHT = {
     "starting_point": [40, 125, 0],

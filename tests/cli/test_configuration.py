@@ -50,6 +50,7 @@ speed_limit_kmh = 50
 oracle = "departure"
 oob_tolerance = 0.5
 lane_departure = true
+avoidable = "r157"
 
 [beamng]
 home = "/beamng"

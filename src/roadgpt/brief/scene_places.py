@@ -169,7 +169,8 @@ def _with_arms(
             arms.update(map(str, sides))
             continue
         side = "opposite" if role.where == "oncoming" else str(role.side or "")
-        possible = [_from(what, way, left_hand) for way in ways]
+        is_fork = what == "turn_in" and place.kind == "y_junction"
+        possible = [_from("cross" if is_fork else what, way, left_hand) for way in ways]
         if any((side not in each) if side else not each for each in possible):
             return None
         side = side or possible[0][0]
@@ -177,9 +178,12 @@ def _with_arms(
         if what == "turn_across" and side == "opposite" and ways == ["straight"]:
             arms.add("left" if left_hand else "right")
         if what == "run_sign":
-            if control not in (None, "priority"):
+            gives_way = (
+                "right" if left_hand else "left"
+            )  # where nothing stands, to who comes from the other side
+            if control not in (None, "priority") and (control != "none" or side != gives_way):
                 return None
-            control = "priority"
+            control = control or "priority"
         if what == "run_light":
             if control not in (None, "lights"):
                 raise BriefError(

@@ -194,6 +194,10 @@ class Verdict:
     None for other failures, and if the car did not fail.
     """
 
+    def __repr__(self) -> str:
+        told = (f"{name}={value!r}" for name, value in vars(self).items() if value is not None)
+        return f"Verdict({', '.join(told)})"
+
     @property
     def counts(self) -> dict[str, int]:
         """The number of incidents of each kind that occurred; empty if there were none."""
