@@ -28,7 +28,9 @@ def test_what_a_scene_tells_happens(plan: str, happens: list[str]) -> None:
     for seed in (1, 2):
         run = perform(plan, seed, setup=Setup(reader="plan", drives=False))
         assert run.road is not None
-        assert [*rehearsed(run.world.lay(run.road), run.world, run.seed, CAR, 0.0)] == happens
+        others = rehearsed(run.world.lay(run.road), run.world, run.seed, CAR, 0.0)
+        assert others is not None
+        assert [*others.happened] == happens
 
 
 @pytest.mark.parametrize("side", ["right", "left"])
