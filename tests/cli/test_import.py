@@ -69,8 +69,8 @@ def test_placing_and_the_rule_have_one_measure(
     folder = tmp_path_factory.mktemp("place")
     arc = f'<arc curvature="{bend!r}"/>'
     found = read_opendrive(file(folder, element(x, y, heading, length, arc), width=width))
-    road, size, movement, _ = on_a_map(found.road, found.world(World()), keep_place=False)
-    world = found.world(World()).changed(map_size=size)
+    road, size, movement, _ = on_a_map(found.road, World().changed(**found.world_values), keep_place=False)
+    world = World().changed(**found.world_values).changed(map_size=size)
     s = np.linspace(0, road.length, 50)
     assert road.at(s) - movement == pytest.approx(found.road.at(s), abs=1e-9)
     assert findings("inside_map", road, world) == ()

@@ -10,8 +10,7 @@ import numpy as np
 from roadgpt.geometry.curve import Array
 from roadgpt.ground.ground import Ground, Span
 from roadgpt.network.network import Network, NetworkRoad
-from roadgpt.network.surface import COVER, stations_of
-from roadgpt.road.edges import line
+from roadgpt.network.surface import COVER, lines_of, sheet
 
 PARAPET, THICK = 1.0, 0.25  # m, height and thickness
 DEEP = (0.9, 1 / 22)  # m, least depth of a deck; depth as a share of the distance between piers
@@ -34,31 +33,19 @@ def solids(network: Network, ground: Ground) -> Iterator[Array]:
 def _walks(member: NetworkRoad, span: Span) -> Iterator[Array]:
     """Yields what lies on the shoulders instead of grass."""
     if member.profile.has_shoulders:
-        (left, right), s = _rims(member, span), _stations(member, span)
-        left_edge, right_edge = (_up(line(member.road, s, t), KERB) for t in member.profile.edges(s))
-        yield _sheet(left_edge, _up(left, KERB))
-        yield _sheet(_up(right, KERB), right_edge)
+        left_edge, right_edge, left, right = (
+            _up(each, KERB) for each in lines_of(member, span.start, span.end)
+        )
+        yield sheet(left_edge, left)
+        yield sheet(right, right_edge)
 
 
-def _stations(member: NetworkRoad, span: Span) -> Array:
-    s = stations_of(member)
-    return np.asarray(np.r_[span.start, s[(s > span.start) & (s < span.end)], span.end])
-
-
-def _rims(member: NetworkRoad, span: Span) -> tuple[Array, Array]:
-    s = _stations(member, span)
-    left, right = (line(member.road, s, t) for t in member.profile.rims(s))
-    return left, right
+def _rims(member: NetworkRoad, span: Span) -> list[Array]:
+    return lines_of(member, span.start, span.end)[2:]
 
 
 def _up(points: Array, height: float) -> Array:
     return points + [0.0, 0.0, height]
-
-
-def _sheet(one: Array, other: Array) -> Array:
-    """Returns the surface between two lines ``(n, 3)``, seen from where ``other`` is left of ``one``."""
-    a, b, c, d = one[:-1], one[1:], other[1:], other[:-1]
-    return np.stack([a, b, c, a, c, d], axis=1).reshape(-1, 3, 3)
 
 
 def _quad(a: Array, b: Array, c: Array, d: Array) -> Array:
@@ -73,13 +60,13 @@ def _bridge(member: NetworkRoad, span: Span, ground: Ground) -> Iterator[Array]:
     count = max(0, round(length / PIERS) - 1)
     depth = max(DEEP[0], DEEP[1] * length / (count + 1))
     low_left, low_right = _up(left, -depth), _up(right, -depth)
-    yield from (_sheet(left, low_left), _sheet(low_right, right), _sheet(low_left, low_right))
+    yield from (sheet(left, low_left), sheet(low_right, right), sheet(low_left, low_right))
     for rim, way in ((left, -1.0), (right, 1.0)):
         inner = rim + way * THICK * unit
         outside, inside = (rim, inner) if way < 0 else (inner, rim)  # left and right edge of the wall
-        yield _sheet(_up(inside, PARAPET), _up(outside, PARAPET))
-        yield _sheet(outside, _up(outside, PARAPET))[:, ::-1]
-        yield _sheet(inside, _up(inside, PARAPET))
+        yield sheet(_up(inside, PARAPET), _up(outside, PARAPET))
+        yield sheet(outside, _up(outside, PARAPET))[:, ::-1]
+        yield sheet(inside, _up(inside, PARAPET))
         for at, end in ((0, 1), (-1, -1)):
             corners = inside[at], outside[at], _up(outside[at], PARAPET), _up(inside[at], PARAPET)
             yield _quad(*corners[::-end])
@@ -94,13 +81,13 @@ def _bridge(member: NetworkRoad, span: Span, ground: Ground) -> Iterator[Array]:
         side = unit[k] * half[k]
         ring = [middle[k] + a * ahead + b * side for a, b in ((1, -1), (1, 1), (-1, 1), (-1, -1), (1, -1))]
         flat = np.array(ring) * [1.0, 1.0, 0.0]
-        yield _sheet(flat + [0.0, 0.0, foot], flat + [0.0, 0.0, top])
+        yield sheet(flat + [0.0, 0.0, foot], flat + [0.0, 0.0, top])
 
 
 def _tunnel(member: NetworkRoad, span: Span, ground: Ground) -> Iterator[Array]:
     left, right = _rims(member, span)
     high_left, high_right = _up(left, CLEAR), _up(right, CLEAR)
-    yield from (_sheet(left, high_left), _sheet(high_right, right), _sheet(high_left, high_right))
+    yield from (sheet(left, high_left), sheet(high_right, right), sheet(high_left, high_right))
     for at, way in ((0, 1.0), (-1, -1.0)):
         a, b = (right[at], left[at]) if way > 0 else (left[at], right[at])  # right and left of who drives in
         out = (b - a) / np.linalg.norm(b - a)

@@ -100,18 +100,18 @@ def pavement_of(network: Network, spans: Sequence[Span] = ()) -> Pavement:
         own = sorted((each for each in spans if each.road == member.id), key=lambda each: each.start)
         stops = [0.0, *(at for each in own for at in (each.start, each.end)), member.road.length]
         for number, (start, end) in enumerate(pairwise(stops)):
-            left, right, left_rim, right_rim = _lines_of(member, start, end)
+            left, right, left_rim, right_rim = lines_of(member, start, end)
             if number % 2 == 0:
-                inner.append(_quads(right, left))
-                outer += [_quads(left, left_rim), _quads(right_rim, right)]
+                inner.append(sheet(right, left))
+                outer += [sheet(left, left_rim), sheet(right_rim, right)]
                 shapes.append(shapely.Polygon(np.concatenate([right_rim, left_rim[::-1]])[:, :2]))
                 continue
-            decks.append(_quads(right_rim, left_rim))
+            decks.append(sheet(right_rim, left_rim))
             if own[number // 2].kind == "bridge":
                 low_left, low_right = (_lowered(rim) for rim in (left_rim, right_rim))
-                clear.append(_quads(low_right, low_left))
+                clear.append(sheet(low_right, low_left))
             else:
-                covers.append(_quads(right_rim, left_rim) + [0.0, 0.0, COVER])
+                covers.append(sheet(right_rim, left_rim) + [0.0, 0.0, COVER])
                 for at, way in ((0, 1), (-1, -1)):
                     ahead = way * _unit(left_rim[at] - right_rim[at])[::-1] * [1.0, -1.0]
                     one, other = (left_rim[at], right_rim[at])[::way]
@@ -137,7 +137,7 @@ def pavement_of(network: Network, spans: Sequence[Span] = ()) -> Pavement:
     return Pavement.of(np.concatenate([*inner, *outer]), rings, **more)
 
 
-def _lines_of(member: NetworkRoad, start: float, end: float) -> list[Array]:
+def lines_of(member: NetworkRoad, start: float, end: float) -> list[Array]:
     """Returns the left and right edge and the left and right rim between two stations, ``(n, 3)`` each, on
     the sides of the triangles that exporters make of the road."""
     s, profile = stations_of(member), member.profile
@@ -158,8 +158,9 @@ def _unit(vector: Array) -> Array:
     return np.asarray(flat / np.hypot(*flat))
 
 
-def _quads(right: Array, left: Array) -> Array:
-    """Returns the triangles ``(2n - 2, 3, 3)`` between two lines ``(n, 3)``."""
+def sheet(right: Array, left: Array) -> Array:
+    """Returns the triangles ``(2n - 2, 3, 3)`` between two lines ``(n, 3)``, seen from where ``left`` is left
+    of ``right``."""
     a, b, c, d = right[:-1], right[1:], left[1:], left[:-1]
     return np.stack([a, b, c, a, c, d], axis=1).reshape(-1, 3, 3)
 

@@ -11,7 +11,7 @@ import numpy as np
 from roadgpt.drive import Drive
 from roadgpt.errors import ExportError, UsageError
 from roadgpt.export import Others, Poses, doubts, exporter_of, save
-from roadgpt.export.ego import CAR, start_of
+from roadgpt.export.ego import CAR
 from roadgpt.network import RoadEnd, network_of
 from roadgpt.road import Road, World
 from roadgpt.run.folder import Draw
@@ -57,25 +57,18 @@ def poses_of(drive: Drive) -> Poses | None:
     return Poses.of(drive.columns, None if drive.others is None else _others(drive.others))
 
 
-def _others(tracks: "Tracks") -> Others:
+def _others(tracks: "Tracks", samples: int | None = None) -> Others:
     sizes = np.array([each.size for each in tracks.actors]).reshape(-1, 3)
     names, kinds = (tuple(getattr(each, what) for each in tracks.actors) for what in ("name", "kind"))
-    return Others(names, kinds, sizes, tracks.time, tracks.states)
+    return Others(names, kinds, sizes, tracks.time[:samples], tracks.states[:samples])
 
 
 def _placed(road: Road, world: World, seed: int) -> Others | None:
     """Returns the others as they are when the tested car begins a drive."""
-    from roadgpt.traffic import TestedCar, begin  # only scenes that nobody has driven load it
+    from roadgpt.traffic.rehearsal import rehearsed  # only scenes that nobody has driven load it
 
-    road = world.lay(road)
-    if (traffic := begin(road, world, seed)) is None:
-        return None
-    s = start_of(road)
-    t = float(world.profile_of(road).middle(s))
-    x, y, _ = road.at(s + CAR.middle, t).tolist()
-    pose = x, y, float(road.heading(s)), world.first_speed, s, t
-    traffic.advance(TestedCar(*pose, CAR.length, CAR.width))
-    return _others(traffic.tracks())
+    others = rehearsed(road, world, seed, ahead=CAR.middle)
+    return None if others is None else _others(others.tracks(), 1)
 
 
 def _lights(road: Road, drive: Drive, world: World) -> dict[int, list[tuple[float, dict[RoadEnd, str]]]]:

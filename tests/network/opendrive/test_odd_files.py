@@ -50,7 +50,7 @@ def read(
 
 
 def own(found: ImportedRoad) -> Profile:
-    return found.world(World()).profile_of(found.road)
+    return World().changed(**found.world_values).profile_of(found.road)
 
 
 def rows(tag: str, station: str, records: list[tuple[float, ...]]) -> str:

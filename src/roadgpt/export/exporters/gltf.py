@@ -9,7 +9,7 @@ without a seam, and are the same for every road. Source: Khronos Group, glTF 2.0
 import io
 import json
 import struct
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -21,7 +21,6 @@ from PIL import Image
 
 from roadgpt.export.ego import Poses, goal_of, on_the_ground, start_of
 from roadgpt.geometry.curve import Array
-from roadgpt.ground.ground import Ground, Span
 from roadgpt.ground.mesh import GroundMesh, mesh_of, water_of
 from roadgpt.network import Network, NetworkRoad, network_of, only_road
 from roadgpt.network.landscape import ground_around
@@ -139,7 +138,8 @@ def land_meshes(road: Road, world: World) -> list[TriangleMesh]:
     if not ground.pavement.rims:
         return []
     out = [_land("ground", "grass", mesh_of(ground, to_horizon=False))]
-    out += [_solid(f"{span.kind} {n}", each) for n, (span, each) in _structures(network, ground)]
+    built = zip(ground.pavement.spans, solids(network, ground), strict=True)
+    out += [_solid(f"{span.kind} {n}", each) for n, (span, each) in enumerate(built)]
     if len((water := water_of(ground)).triangles):
         out.append(_land("water", "water", water))
     return out
@@ -215,10 +215,6 @@ def _painted(network: Network) -> list[TriangleMesh]:
         points = arrow.points + PAINT * UP
         bands.append((points, np.tile(UP, (len(points), 1)), points[:, :2], arrow.corners))
     return [_joined("lines", "paint", bands)] if bands else []
-
-
-def _structures(network: Network, ground: Ground) -> Iterator[tuple[int, tuple[Span, Array]]]:
-    return enumerate(zip(ground.pavement.spans, solids(network, ground), strict=True))
 
 
 def _solid(name: str, triangles: Array) -> TriangleMesh:

@@ -26,7 +26,7 @@ from roadgpt.network.opendrive.tree import DRIVING, NUMBER, Remarks, read_tree
 from roadgpt.network.road_or_route import ONLY
 from roadgpt.network.route import Route
 from roadgpt.network.stretch import turned
-from roadgpt.road import Profile, Road, World
+from roadgpt.road import Profile, Road
 from roadgpt.road.profile import Marking, as_cubics
 from roadgpt.road.world import LANE_WIDTHS
 
@@ -50,15 +50,10 @@ class ImportedRoad:
     friction: float | None  # friction coefficient of the driven lane, up to 2; None if the file gives none
     remarks: tuple[str, ...]  # sentences about contents of the file that were changed, replaced or left out
 
-    def world(self, base: World) -> World:
-        """Returns ``base`` with the lane width, shoulder, speed limit and friction of this road. A speed
-        limit or friction that the file does not state is taken from ``base``. If ``road.profile`` is not
-        None, it defines the lanes and shoulders, and ``base`` keeps its lane width and shoulder."""
-        return base.changed(**self.world_values)
-
     @property
     def world_values(self) -> dict[str, float]:
-        """The fields of a World that the file states, by name."""
+        """The fields of a World that the file states, by name: no lane width and shoulder if ``road.profile``
+        is not None, which defines them."""
         told = {"speed_limit": self.speed_limit, "friction": self.friction}
         if self.road.profile is None:
             told |= {"lane_width": self.lane_width, "shoulder": self.shoulder}

@@ -8,7 +8,7 @@ is the line between the two directions of an arm, or the left edge of a connecti
 With traffic on the left, the boundary is computed for the mirrored network, whose traffic is on the right. It
 is then mirrored back: the segments are followed in reverse order, with left and right exchanged."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
@@ -17,21 +17,16 @@ import numpy as np
 
 from roadgpt.brief.junctions import RAMPS
 from roadgpt.export.markup import Value, XmlElement
-from roadgpt.geometry import Piece, PieceCurve
 from roadgpt.geometry.curve import Array
-from roadgpt.network import Connection, Junction, Network, RoadEnd
+from roadgpt.network import Junction, Network, RoadEnd
 from roadgpt.network.paved import outline_of, paved_by, stations_of
 
 if TYPE_CHECKING:
     from shapely import LinearRing
 
-EARLIER = 0.1  # m by which a way must bend earlier than the way along the kerb
-LEAST = 0.001  # m; a smaller distance between two edges is ignored
-STEP = 0.1  # m, approximate distance between two points of an edge
-ROUNDABOUT_WAYS = 3  # number of ways through a roundabout's junction with a two-way road
-NEAR = 0.005  # m, between the outline and the edge that it follows: both are polylines
+NEAR = 0.0005  # m, between the outline and the edge that it follows, whose corners are rounded
 ROUNDING = 0.01  # m; a station this close to an end of its road is written as "start" or "end"
-SHORT = 0.02  # m; shorter pieces of the outline come from rounding and are left out
+SHORT = 0.002  # m; shorter pieces of the outline come from rounding and are left out
 
 
 def boundary(network: Network, junction: Junction) -> XmlElement:
@@ -70,31 +65,15 @@ class BoundarySegment(NamedTuple):
 def _segments(network: Network, junction: Junction) -> Iterator[BoundarySegment]:
     """Yields the segments of a boundary in a network with traffic on the right."""
     arms = [arm.end for arm in junction.arms]
-    ways = {(each.incoming, each.outgoing): each for each in junction.connections}
-    outline = PavedOutline.of(network, junction) if _needs_outline(junction) else None
+    outline = PavedOutline.of(network, junction) if junction.kind not in RAMPS else None
     for end, after in pairwise([*arms, arms[0]]):
         yield _across(junction, end)
-        if outline is not None:
-            corners = _corner(network, junction, end, 1), _corner(network, junction, after, 0)
-            for edge, first, last in outline.between(*corners):
-                yield _along(edge.road, edge.lane, first, last)
-        elif (right := ways.get((end, after))) is not None:
-            # traffic on the right that turns right into the next arm keeps to the kerb
-            yield from _outermost(network, junction, right)
-        elif (left := ways.get((after, end))) is not None:
-            # along the central island of a roundabout, where there is no traffic on the other side
-            yield _along(left.road, 0, "end", "start")
-        else:
-            yield from _between(network, ways, end, after)
-
-
-def _needs_outline(junction: Junction) -> bool:
-    """Returns whether any way may be the outermost one, because several lanes or one-way roads meet."""
-    if junction.kind in RAMPS:
-        return False
-    count = len(junction.arms)
-    usual = ROUNDABOUT_WAYS if junction.kind == "roundabout" else count * (count - 1)
-    return len(junction.connections) < usual or any(len(each.lanes) > 1 for each in junction.connections)
+        if outline is None:
+            yield from _between(network, junction, end, after)
+            continue
+        corners = _corner(network, junction, end, 1), _corner(network, junction, after, 0)
+        for edge, first, last in outline.between(*corners):
+            yield _along(edge.road, edge.lane, first, last)
 
 
 def _corner(network: Network, junction: Junction, end: RoadEnd, which: int) -> Array:
@@ -105,29 +84,31 @@ def _corner(network: Network, junction: Junction, end: RoadEnd, which: int) -> A
     return member.road.at(s, edges.left if lane > 0 else edges.right)[:2]
 
 
-def _between(
-    network: Network, ways: Mapping[tuple[RoadEnd, RoadEnd], Connection], end: RoadEnd, after: RoadEnd
-) -> Iterator[BoundarySegment]:
-    """Yields the segments between two neighbouring arms that no way joins, as at a merge or an exit.
+def _between(network: Network, junction: Junction, end: RoadEnd, after: RoadEnd) -> Iterator[BoundarySegment]:
+    """Yields the segments between two neighbouring arms of a merge or an exit, whose ways may lie apart.
 
-    Two ways join both arms to a third arm, or lead from a third arm to both. The segments follow one
-    way from the first arm to the third arm, and the other way on to the second arm."""
-    for third in dict.fromkeys(each for way in ways for each in way):
-        if (end, third) in ways and (after, third) in ways:
-            yield _right(network, ways[end, third].road)
-            yield _along(ways[after, third].road, 0, "end", "start")
-            return
-        if (third, end) in ways and (third, after) in ways:
-            yield _along(ways[third, end].road, 0, "end", "start")
-            yield _right(network, ways[third, after].road)
-            return
+    If no way joins the arms, two ways join both to a third arm, or lead from a third arm to both. The
+    segments follow one way from the first arm to the third arm, and the other way on to the second arm."""
+    ways = {(each.incoming, each.outgoing): each.road for each in junction.connections}
 
+    def right(road: int) -> BoundarySegment:
+        return _along(road, -len(network.road(road).profile.right), "start", "end")
 
-def _right(
-    network: Network, road: int, start: float | None = None, end: float | None = None
-) -> BoundarySegment:
-    """Returns the segment along the right edge of a connecting road, or between two stations of it."""
-    return _along(road, -len(network.road(road).profile.right), start or "start", end or "end")
+    def left(road: int) -> BoundarySegment:
+        return _along(road, 0, "end", "start")
+
+    if (end, after) in ways:
+        yield right(ways[end, after])
+    elif (after, end) in ways:
+        yield left(ways[after, end])
+    else:
+        for third in dict.fromkeys(each for way in ways for each in way):
+            if (end, third) in ways and (after, third) in ways:
+                yield from (right(ways[end, third]), left(ways[after, third]))
+                return
+            if (third, end) in ways and (third, after) in ways:
+                yield from (left(ways[third, end]), right(ways[third, after]))
+                return
 
 
 def _across(junction: Junction, end: RoadEnd) -> BoundarySegment:
@@ -149,96 +130,6 @@ def _lanes_across(junction: Junction, end: RoadEnd) -> tuple[int, int]:
 
 def _along(road: int, lane: int, start: Value, end: Value) -> BoundarySegment:
     return BoundarySegment(road, (lane, start), (lane, end), is_across=False)
-
-
-def _outermost(network: Network, junction: Junction, right: Connection) -> list[BoundarySegment]:
-    """Returns the right edges of ways, or parts of them, that form the outermost edge between two arms.
-
-    Usually this is the edge of the way that turns right into the next arm, along the kerb. If the arms end at
-    different distances, this right turn may begin or end with a straight line. The way to another arm may
-    then bend earlier, and its edge is up to 12 cm farther out than that of the right turn.
-
-    The parts are in driving order. The network has traffic on the right, and ``right`` is the way from one of
-    the two arms to the next arm counter-clockwise."""
-    before = [c for c in junction.connections if c.incoming == right.incoming and c is not right]
-    behind = [c for c in junction.connections if c.outgoing == right.outgoing and c is not right]
-    first, last = _before(network, before, right, 1), _before(network, behind, right, -1)
-    length = network.road(right.road).road.length
-    if first is not None and last is not None and first[2] >= length - last[2]:
-        return [_right(network, right.road)]
-    found = [_right(network, right.road, first and first[2], last and length - last[2])]
-    if first is not None:
-        found.insert(0, _right(network, first[0], None, first[1]))
-    if last is not None:
-        found.append(_right(network, last[0], network.road(last[0]).road.length - last[1]))
-    return found
-
-
-def _before(
-    network: Network, ways: Sequence[Connection], right: Connection, sense: int
-) -> tuple[int, float, float] | None:
-    """Finds the way that leads farthest beyond the edge of the way ``right`` along the kerb, where both begin
-    (``sense`` is 1) or end (-1).
-
-    Returns the id of the connecting road, and two distances in metres from the common end of both ways to the
-    point at which their edges cross: along the found way and along ``right``."""
-    line = _straight(network, right, sense)[0] - EARLIER
-    if line <= 0:
-        return None
-    found = []
-    for way in ways:
-        straight, bends_right = _straight(network, way, sense)
-        if bends_right and straight < line and (crossing := _crossing(network, way, right, sense)):
-            found.append((crossing[0], (way.road, *crossing[1:])))
-    return max(found)[1] if found else None
-
-
-def _straight(network: Network, way: Connection, sense: int) -> tuple[float, bool]:
-    plan = network.road(way.road).road.plan
-    assert isinstance(plan, PieceCurve)
-    pieces: Sequence[Piece] = plan.pieces[::sense]
-    lengths = [piece.length for piece in pieces]
-    bend = next((n for n, piece in enumerate(pieces) if piece.k0 or piece.k1), len(pieces))
-    is_right = bend < len(pieces) and min(pieces[bend].k0, pieces[bend].k1) < 0
-    return sum(lengths[:bend]), is_right
-
-
-def _crossing(
-    network: Network, way: Connection, right: Connection, sense: int
-) -> tuple[float, float, float] | None:
-    """Returns in metres how far a way leads beyond the edge of ``right``, and the distances to where the
-    edges cross; None if it is less than ``LEAST``, or if the edges do not cross."""
-    s, x, y = _edge(network, way, sense)
-    s2, x2, y2 = _edge(network, right, sense)
-    beyond = np.interp(x, x2, y2) - y
-    beyond[x > x2[-1]] = -1.0
-    farthest = int(np.argmax(beyond))
-    if beyond[farthest] < LEAST:
-        return None
-    back = farthest + int(np.argmax(beyond[farthest:] <= 0))
-    if beyond[back] > 0:
-        return None
-    share = beyond[back - 1] / (beyond[back - 1] - beyond[back])
-    at = x[back - 1] + share * (x[back] - x[back - 1])
-    return float(beyond[farthest]), float(np.interp(at, x, s)), float(np.interp(at, x2, s2))
-
-
-def _edge(network: Network, way: Connection, sense: int) -> tuple[Array, Array, Array]:
-    """Returns points of the right edge of a way as far as it turns by less than a right angle.
-
-    The result is three arrays ``(n,)`` in metres: the distance from the start of the way, and the coordinates
-    ahead of this start and to its left. With ``sense`` -1, the way is mirrored and followed backwards, so
-    that its end is the start."""
-    road = network.road(way.road).road
-    assert road.profile is not None
-    distance = np.linspace(0.0, road.length, max(2, round(road.length / STEP)))
-    s = distance if sense > 0 else road.length - distance
-    dx, dy = (road.at(s, road.profile.edges(s).right)[:, :2] - road.plan.at(s[0])).T
-    heading = float(road.heading(s[0]))
-    along = sense * (dx * np.cos(heading) + dy * np.sin(heading))
-    count = int(np.argmin(np.diff(along) > 0)) if np.any(np.diff(along) <= 0) else len(along)
-    aside = dy * np.cos(heading) - dx * np.sin(heading)
-    return distance[:count], along[:count], aside[:count]
 
 
 @dataclass(frozen=True)
