@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from roadgpt import check
 from roadgpt.brief.model import Brief
-from roadgpt.brief.outline import Feature, Outline
+from roadgpt.brief.outline import Feature
 from roadgpt.brief.ranges import Range
 from roadgpt.check.measures import measure
 from roadgpt.design import draft
@@ -17,7 +17,6 @@ from roadgpt.design.road_elements import RoadElements, elements_on_road
 from roadgpt.road import Design, World, build
 
 WORLD = World()
-FREE = Outline(groups=(), turns=Range())
 
 
 def asked_of(elements: RoadElements, name: str, feature: Feature) -> RoadElements:
@@ -25,11 +24,11 @@ def asked_of(elements: RoadElements, name: str, feature: Feature) -> RoadElement
     return tuple(replace(e, asked=feature) if e.name == name else e for e in elements)
 
 
-def fitted(design: Design, name: str, feature: Feature, outline: Outline = FREE) -> Look:
+def fitted(design: Design, name: str, feature: Feature, length: Range | None = None) -> Look:
     """The road on which one element has what is asked of it, and all others are frozen."""
     elements, _ = elements_on_road(design)
     frozen = {element.name for element in elements} - {name}
-    needs = Requirements(WORLD, outline, before=design)
+    needs = Requirements(WORLD, length, before=design)
     return fit(design, asked_of(elements, name, feature), needs, frozen)
 
 
@@ -82,7 +81,7 @@ def test_a_length_of_the_road_is_made_by_the_elements_that_are_free() -> None:
     elements, found = elements_on_road(design)
     straight = max((e for e in elements if not e.is_turn), key=lambda element: element.length)
     wanted = Range(found.length + 9, found.length + 15)
-    after = fitted(design, straight.name, Feature("straight", "straight"), replace(FREE, length=wanted))
+    after = fitted(design, straight.name, Feature("straight", "straight"), wanted)
     assert not after.objection
     assert build(after.design).length == pytest.approx(found.length + 12, abs=3.5)
     pairs = zip(design.segments, after.design.segments, strict=True)

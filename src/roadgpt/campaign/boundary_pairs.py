@@ -4,6 +4,7 @@ Two roads correspond if they have the same sequence of left turns, right turns a
 between two corresponding roads can be made by averaging each length, angle, radius and slope.
 """
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -59,10 +60,7 @@ def distance(one: Elements, other: Elements) -> float:
     """Returns ``BoundaryPair.distance`` of two roads; infinite if they do not correspond."""
     if _row(one) != _row(other):
         return np.inf
-    total = 0.0
-    for difference, *_ in _differences(one, other):
-        total += difference**2
-    return float(np.sqrt(total))
+    return math.sqrt(sum(difference**2 for difference, *_ in _differences(one, other)))
 
 
 def weightiest(kept: Elements, lost: Elements) -> str:

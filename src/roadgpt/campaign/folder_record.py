@@ -151,9 +151,8 @@ def run_again(folder: Path, cell: str, number: int) -> tuple[Run, Result]:
         result, kept = record.result(cell, number), record.run(cell, number, has_drive=False)
     if kept.road is None:
         raise no_road(folder, cell, result)
-    despite = (
-        result.margin is not None or result.outcome != "INVALID"
-    )  # then it was driven, whatever the rules find
+    # then it was driven, whatever the rules find
+    despite = result.margin is not None or result.outcome != "INVALID"
     run = prove(kept.road, kept.seed, kept.world, kept.request.setup, number, kept.brief, despite)
     return replace(run, request=kept.request, design=kept.design), result
 

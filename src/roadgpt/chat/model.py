@@ -110,15 +110,11 @@ class Spent(ChatValue):
 
     def since(self, before: "Spent") -> "Spent":
         """Returns the difference between this total and an earlier total, ``before``."""
-        old = before.usage
-        more = self + Spent(
-            calls=-before.calls,
-            usage=Usage(prompt=-old.prompt, completion=-old.completion),
-            seconds=-before.seconds,
-            cost=None if before.cost is None else -before.cost,
-        )
-        cost = None if more.cost is None else round(more.cost, DECIMALS)
-        return more.model_copy(update={"seconds": round(more.seconds, DECIMALS), "cost": cost})
+        now, old = self.usage, before.usage
+        usage = Usage(prompt=now.prompt - old.prompt, completion=now.completion - old.completion)
+        cost = None if self.cost is None or before.cost is None else round(self.cost - before.cost, DECIMALS)
+        seconds = round(self.seconds - before.seconds, DECIMALS)
+        return Spent(calls=self.calls - before.calls, usage=usage, seconds=seconds, cost=cost)
 
 
 class ChatSettings(ChatValue):

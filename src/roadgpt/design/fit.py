@@ -31,6 +31,7 @@ penalty, whose weight grows from round to round. Each step solves for all free l
 place on the map at once (Levenberg-Marquardt)."""
 
 from collections.abc import Collection, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -51,7 +52,6 @@ from roadgpt.check.rules.below_floor import ROUNDING
 from roadgpt.check.rules.too_abrupt import abrupt_place
 from roadgpt.design.compose import Windows
 from roadgpt.design.elements import ABOVE_GROUND
-from roadgpt.design.heights import climbing
 from roadgpt.design.layout import moved_onto_map, neighbours
 from roadgpt.design.road_elements import (
     RoadElement,
@@ -85,7 +85,7 @@ class Requirements(NamedTuple):
     """The requirements for a road, in addition to those for each of its elements."""
 
     world: World  # the size of the map, and the limits that the rules check
-    outline: Outline = Outline(groups=(), turns=Range())  # requirements for the whole road; none by default
+    length: Range | None = None  # of the whole road, in metres; None if it is open
     before: Design | None = None
     """The road before an edit; the parabolas between its slopes are kept. With None, they are chosen
     anew, and each turn must be measured with the slope that it has in the design."""
@@ -145,11 +145,11 @@ class Look:
                 return turn_complaints(turns, seen, asked)[0].sentence
             wanted = f"asked for {asked.length or 'any'} m at {asked.grade or 'any'} %"
             return f"the straight would be {seen.length:.1f} m long at {seen.grade:.1f} %, {wanted}"
-        return next(
-            (complaint.sentence for complaint in complaints(self.found, self.requirements.outline)), ""
-        )
+        whole = replace(FREE, length=self.requirements.length)
+        return next((complaint.sentence for complaint in complaints(self.found, whole)), "")
 
 
+FREE = Outline(groups=(), turns=Range())  # nothing is required of the whole road
 ROUNDS = 24  # of changing inclines
 ROOMIER = (1.0, 1.5, 2.5)  # factors on the room for parabolas of a proposal
 PARABOLAS = tuple((ease, is_widened) for is_widened in (False, True) for ease in EASES)  # of an edited road
@@ -197,26 +197,17 @@ class _Slopes(NamedTuple):
         return after
 
 
-def graded(
-    design: Design, elements: RoadElements, outline: Outline, world: World, before: Design | None = None
-) -> Design:
+def graded(design: Design, elements: RoadElements, world: World, before: Design | None = None) -> Design:
     """Returns the design with inclines and parabolas for which the measured grades are as required.
 
     If all such designs violate the rule ``too_abrupt``, the last of them is returned. If no design has the
     required grades, the first one tried is returned. The plan and the start stay the same. ``before`` is the
     road before an edit, and None for a proposal."""
     limit = Range(-100 * world.limits.max_grade, 100 * world.limits.max_grade)
-    slopes = (
-        _slopes_of_edit(elements, limit) if before else _slopes_of_proposal(elements, outline, world, limit)
-    )
+    slopes = _slopes_of_edit(elements, limit) if before else _slopes_of_proposal(elements, world, limit)
     lengths, inclines = [s.distance for s in design.segments], [s.incline for s in design.segments]
     start = slopes.within_bounds(np.array(inclines))
-    climb = outline.climb.drawn_in(0.3, 0.2) if outline.climb else Range()
-    metres = float(start @ lengths) / 100
-    if metres not in climb:
-        metres = min(max(metres, climb.lo), climb.hi)
-        start = climbing(start, np.array(lengths), slopes.bounds, metres)
-    road, pace = build(design), Pace.of(design, world, outline.speed)
+    road, pace = build(design), Pace.of(design, world)
     points, stations = road.centreline(), road.sample().s
     short = {i for e in elements if not e.is_turn and e.length < SHORTEST_SLOPE for i in e.members}
     kept: Design | None = None
@@ -257,15 +248,14 @@ def _slopes_of_edit(elements: RoadElements, limit: Range) -> _Slopes:
     return _Slopes(elements, tuple(asked), tuple(aims), tuple(bounds))
 
 
-def _slopes_of_proposal(elements: RoadElements, outline: Outline, world: World, limit: Range) -> _Slopes:
+def _slopes_of_proposal(elements: RoadElements, world: World, limit: Range) -> _Slopes:
+    windows = Windows(FREE, world)
     accepted, aims, bounds = list[Range | None](), list[Range](), list[Range]()
     for element in elements:
         class_, *ways = map(way, (element.incline, *(s.incline for s in element.segments)))
-        try:
-            windows = Windows(outline, world)
-            asked = windows.of(element.asked) if element.asked else windows.base
-        except DesignError:  # the Brief contradicts itself: then the rules say so
-            asked = None
+        asked: Range | None = None
+        with suppress(DesignError):  # steeper than allowed: then the rules say so
+            asked = windows.of(element.asked) if element.asked else None
         aim = overlap(CLEAR_GRADES[class_], asked) or CLEAR_GRADES[class_]
         if asked and aim.lo > aim.hi:
             aim = asked
@@ -484,7 +474,7 @@ def _limits_of(
 ) -> tuple[Array, Array]:
     """Returns all limits of lengths and turns as a matrix ``(m, 2 n)`` and a right-hand side ``(m,)``;
     ``peak`` is the ratio of maximum to mean curvature of each of the ``n`` segments."""
-    world, outline, segments = first.requirements.world, first.requirements.outline, first.design.segments
+    world, length, segments = first.requirements.world, first.requirements.length, first.design.segments
     rows = _Rows(len(segments))
     radius = world.limits.min_radius * margins.radius
     shortest = 1 / (1 - LEAST_TRANSITION)
@@ -504,11 +494,8 @@ def _limits_of(
             rows.within(range(one.members.stop, other.first), Range(margins.apart))
     whole = range(len(segments))
     rows.within(whole, Range(world.limits.min_length + 2.0))
-    if outline.length:
-        rows.within(whole, _drawn_in(outline.length, margins.promise / 4))
-    if outline.turning:
-        turning = [i for i, segment in enumerate(segments) if segment.turn_degrees]
-        rows.turned(turning, _drawn_in(outline.turning, margins.promise / 4))
+    if length:
+        rows.within(whole, _drawn_in(length, margins.promise / 4))
     return np.array(rows.rows).reshape(-1, 2 * len(segments)), np.array(rows.most)
 
 
@@ -748,7 +735,7 @@ def fit(
     lengths, turns and radii stay as they are. Returns a Look at that road, with an empty ``objection``; if no
     such road was found, a Look at the design, moved inside the map if possible. Raises UsageError if no road
     can be built from these segments."""
-    world, outline, before = requirements.world, requirements.outline, requirements.before
+    world, before = requirements.world, requirements.before
     first = look(design, elements, requirements)
     free = np.array([element.name not in frozen for element in elements for _ in element.segments])
     if not first.objection or not 1 <= free.sum() <= MOST_SEGMENTS:
@@ -766,7 +753,7 @@ def fit(
         if before and segments == last.design.segments:
             continue
         design = first.design.model_copy(update={"segments": segments})
-        design = graded(design, first.elements, outline, world, before)
+        design = graded(design, first.elements, world, before)
         last = look(design, first.elements, requirements)
         if not last.objection:
             return last if before else _restored(last, first)

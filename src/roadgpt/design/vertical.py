@@ -57,11 +57,11 @@ class Pace:
         return cls(*bends_of(elements), world, speed)
 
     @classmethod
-    def of(cls, design: Design, world: World, speed: SpeedLimits | None = None) -> "Pace":
+    def of(cls, design: Design, world: World) -> "Pace":
         """Returns the Pace of the road that is built from a design."""
         road = build(design)
         s = road.sample().s
-        return cls(s, road.sample().curvature, road.length, world, speed)
+        return cls(s, road.sample().curvature, road.length, world, None)
 
     @cached_property
     def _squares(self) -> tuple[float, Array]:

@@ -162,9 +162,9 @@ def _class(module: ModuleType, wanted: str, path: str) -> Any:
 
 
 def _made(driver: Any, spec: str) -> Any:
+    if not callable(getattr(driver, "steer", None)):
+        raise UsageError(f"the driver {spec} has no method steer(self, view): add it")
     if inspect.isclass(driver):
-        if not callable(getattr(driver, "steer", None)):
-            raise UsageError(f"the driver {spec} has no method steer(self, view): add it")
         try:
             driver = driver()
         except (Exception, SystemExit) as error:
@@ -172,8 +172,6 @@ def _made(driver: Any, spec: str) -> Any:
                 f"the driver {spec} cannot be made without arguments: {_said(error)}; "
                 "give its parameters defaults"
             ) from error
-    if not callable(getattr(driver, "steer", None)):
-        raise UsageError(f"the driver {spec} has no method steer(self, view): add it")
     try:
         inspect.signature(driver.steer).bind(None)
     except TypeError as error:

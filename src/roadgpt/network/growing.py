@@ -81,7 +81,7 @@ def build_route(design: Design, world: World) -> Route:
         for number, (own, place) in enumerate(zip(design.junctions, seen.junctions, strict=True), 1):
             try:
                 if isinstance(own, JunctionDesign):
-                    own.arm_taken(design.left_hand)  # says left and right as the design does
+                    own.check_taken(design.left_hand)  # says left and right as the design does
                 grown.pass_place(number, place)
             except UsageError as error:
                 raise UsageError(f"junction {number}: {error}") from error

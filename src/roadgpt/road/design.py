@@ -350,12 +350,11 @@ class JunctionDesign(FrozenFields):
         arms = self.arms or tuple(ArmDesign(angle=angle) for angle in USUAL_ARMS[self.kind])
         return tuple(sorted(arms, key=lambda arm: arm.angle))
 
-    def arm_taken(self, left_hand: bool) -> ArmDesign | None:
-        """Returns the arm that the route takes; None if the route turns back at a roundabout. Raises
-        UsageError if no arm, or more than one, fits ``take``, or the arm has a length or segments."""
+    def check_taken(self, left_hand: bool) -> None:
+        """Raises UsageError if no arm, or more than one, fits ``take``, or it has a length or segments."""
         arms, taken = self.all_arms, self.taken
         if taken is None:
-            return None
+            return
         arm = arms[::-1][taken] if left_hand and isinstance(self.take, int) else arms[taken]
         if arm.length is not None or arm.segments:
             given = "its road segments" if arm.segments else "length"
@@ -363,7 +362,6 @@ class JunctionDesign(FrozenFields):
                 f"the arm at {arm.angle:g} degrees is the one that the route takes; its road is that of the "
                 f"segments behind the junction, so leave out {given}"
             )
-        return arm
 
     @property
     def taken(self) -> int | None:
@@ -630,17 +628,9 @@ def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
     junctions = tuple(place for place, _, _ in places)
     lanes = None if raw is None else _read_part(LanesDesign, "the lanes of the design", raw, OF_A_ROAD)
     _check_order(junctions, len(segments))
-    try:
-        design = Design(
-            starting_point=data.get("starting_point", ()),
-            theta=data.get("theta"),
-            segments=segments,
-            junctions=junctions,
-            lanes=lanes,
-            left_hand=left_hand,
-        )
-    except ValidationError as error:
-        raise UsageError(f"the design cannot be read: {first_error(error)}") from error
+    values = {"segments": segments, "junctions": junctions, "lanes": lanes, "left_hand": left_hand}
+    values |= {"starting_point": data.get("starting_point", ()), "theta": data.get("theta")}
+    design = _validated(Design, "the design", values)
     if not design.is_plain and max(map(abs, (*design.starting_point, design.theta))) > FARTHEST:
         # the digits would not suffice
         raise UsageError(f"starting_point or theta is beyond {FARTHEST:,.0f}; give smaller numbers")
@@ -692,6 +682,10 @@ def _is_left_hand(data: Mapping[str, Any]) -> bool:
 
 def _read_part(model: type[Part], what: str, raw: Any, fields: str) -> Part:
     _check_object(what, raw, fields)
+    return _validated(model, what, raw)
+
+
+def _validated(model: type[Part], what: str, raw: Any) -> Part:
     try:
         return model.model_validate(raw)
     except ValidationError as error:
@@ -772,7 +766,7 @@ def _junction(what: str, raw: Mapping[str, Any], left_hand: bool) -> tuple[Junct
         raise UsageError(f"{what} cannot be read: {wrong}") from error
     try:
         _check_arms(made)
-        made.arm_taken(left_hand)
+        made.check_taken(left_hand)
     except UsageError as error:
         raise UsageError(f"{what}: {error}") from error
     return made, tuple(remarks)
@@ -802,13 +796,9 @@ def _segment(number: int, raw: Any) -> tuple[Segment, list[str]]:
     if isinstance(raw, Mapping):
         missing = [name for name in REQUIRED if name not in raw]
         if missing:
-            raise UsageError(f"segment {number} cannot be read: {missing[0]}: {_advice('missing', {})}")
+            raise UsageError(f"segment {number} cannot be read: {missing[0]}: {ADVICE['missing']}")
         _no_truths(f"segment {number}", raw)
-    try:
-        segment = Segment.model_validate(raw)
-    except ValidationError as error:
-        raise UsageError(f"segment {number} cannot be read: {first_error(error)}") from error
-    remarks = []
+    segment, remarks = _validated(Segment, f"segment {number}", raw), []
     turn = math.copysign(segment.turn_degrees, {"left": 1.0, "right": -1.0}.get(segment.direction, 1.0))
     if segment.direction == "straight":
         turn = 0.0
@@ -836,37 +826,31 @@ def _no_truths(what: str, data: Mapping[str, Any]) -> None:
     for name, value in data.items():
         values = value if isinstance(value, (list, tuple)) else (value,)
         if any(isinstance(each, bool) for each in values):
-            raise UsageError(f"{what} cannot be read: {str(name)[:40]}: {_advice('float_type', {})}")
+            raise UsageError(f"{what} cannot be read: {str(name)[:40]}: {ADVICE['float_type']}")
 
 
 def first_error(error: ValidationError) -> str:
     """Returns the first error that pydantic found, as the text 'field: what to do'."""
     problem = error.errors()[0]
-    place = ".".join(str(part) for part in problem["loc"])
-    said = _advice(problem["type"], problem.get("ctx", {})) or str(problem["msg"])
+    place, advice = ".".join(str(part) for part in problem["loc"]), ADVICE.get(problem["type"])
+    said = advice.format(**problem.get("ctx", {})) if advice else str(problem["msg"])
     return f"{place}: {said}" if place else said
 
 
-def _advice(kind: str, bounds: Mapping[str, Any]) -> str | None:
-    """Returns what to do about an error that pydantic found; None if pydantic's own message will do."""
-    known = {
-        "missing": "is missing; add it",
-        "extra_forbidden": "is not a field of a design; remove it",
-        "finite_number": "is not finite; give a finite number",
-        "float_type": "is not a number; give one",
-        "float_parsing": "is not a number; give one",
-        "less_than": f"is out of range; give less than {bounds.get('lt', 0):g}",
-        "greater_than": f"is out of range; give more than {bounds.get('gt', 0):g}",
-        "int_from_float": "is not a whole number; give one",
-        "model_type": "give an object with distance, direction, incline, turn_degrees",
-    }
-    limits = {"greater_than_equal": ("ge", "or more"), "less_than_equal": ("le", "or less")}
-    if kind in limits:
-        name, which = limits[kind]
-        return f"is out of range; give {bounds[name]:g} {which}"
-    if kind == "literal_error":
-        return f"is unknown; give {bounds['expected']}"
-    return known.get(kind)
+ADVICE = {
+    "missing": "is missing; add it",
+    "extra_forbidden": "is not a field of a design; remove it",
+    "finite_number": "is not finite; give a finite number",
+    **dict.fromkeys(("float_type", "float_parsing"), "is not a number; give one"),
+    "less_than": "is out of range; give less than {lt:g}",
+    "greater_than": "is out of range; give more than {gt:g}",
+    "greater_than_equal": "is out of range; give {ge:g} or more",
+    "less_than_equal": "is out of range; give {le:g} or less",
+    "literal_error": "is unknown; give {expected}",
+    "int_from_float": "is not a whole number; give one",
+    "model_type": "give an object with distance, direction, incline, turn_degrees",
+}
+"""What to do about an error, by pydantic's name for it; for others, pydantic's own message will do."""
 
 
 def _map(numbered: Mapping[int, Any], data: Mapping[str, Any]) -> Design:

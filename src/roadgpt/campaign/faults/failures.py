@@ -93,14 +93,12 @@ def reason_of(run: Run) -> FailureReason:
     station, friction = float(verdict.at_s or 0.0), world.site.friction
     how = manner_of(road, world, station, verdict.cause, verdict.side)
     if how.way in ("stopped", "late", "hit", "rule"):
-        grade, speed = float(road.grade(station)), float(drive["speed"][-1])
-        if how.way in ("hit", "rule"):
-            contact = verdict.first_contact
-            speed = contact.speed if contact else speed
-            told = verdict.description
-            return FailureReason(how.way, told, station, None, None, speed, 0.0, friction, grade, 0.0)
-        what = "came to a standstill" if how.way == "stopped" else "was too slow to arrive in time"
-        sentence = f"{what} after {station:.0f} m{_slope_text(grade, 0.0)}"
+        grade, speed, sentence = float(road.grade(station)), float(drive["speed"][-1]), verdict.description
+        if how.way in ("stopped", "late"):
+            what = "came to a standstill" if how.way == "stopped" else "was too slow to arrive in time"
+            sentence = f"{what} after {station:.0f} m{_slope_text(grade, 0.0)}"
+        elif verdict.first_contact:
+            speed = verdict.first_contact.speed
         return FailureReason(how.way, sentence, station, None, None, speed, 0.0, friction, grade, 0.0)
     near, bend, place = bend_at(road, world, station)
     begin = _entry(road, world, place, bend)

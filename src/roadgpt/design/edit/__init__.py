@@ -531,11 +531,6 @@ def renamed(road: Look, now: Named, geometry: Geometry, stage: int) -> Named:
     )
 
 
-def unchanged(elements: RoadElements, found: Measures) -> Named:
-    """Returns the elements of the road before the edit, by their own names."""
-    return Named(elements, found, {element.name: element for element in elements})
-
-
 MOST_CHANGES = 12
 
 
@@ -660,7 +655,7 @@ def _in_one_direction(
     asked = placed(changes, elements)
     once = settled(asked)
     wanted = with_final_heights(once)
-    now, road = unchanged(elements, found), None
+    now, road = Named(elements, found, {element.name: element for element in elements}), None
     told, idle, fitted = list[str](), list[str](), list[tuple[Design, Design]]()
     number = 1
     for stage in stages(wanted):

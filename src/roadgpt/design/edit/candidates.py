@@ -619,10 +619,10 @@ def _drafts(
     for steps in islice(_combined(changes), MOST_TRIALS):
         try:
             length = next((step.room for step in reversed(steps) if isinstance(step, RoadLength)), None)
-            needs = plain._replace(outline=replace(plain.outline, length=length))
+            needs = plain._replace(length=length)
             after = _applied(elements, steps, world)
             begun = _started(design, after, elements, world, steps)
-            begun = graded(begun, after, needs.outline, world, design)
+            begun = graded(begun, after, world, design)
             drafts.append(fit(begun, after, needs, _frozen(after)))
         except UsageError as error:
             objection = objection or str(error)

@@ -266,14 +266,11 @@ def slope_candidates(
     is_bounded = bool(change.bound and elements)
     steps = [_bounded(change, elements)] if is_bounded else _slopes(change, elements, world)
     if is_of_parts:
-        steps = [_only_parts(change, step) for step in steps]
+        assert change.target is not None
+        only = change.target.way
+        own = {"up": 1, "down": -1}.get(only or "") if change.way is None else None
+        steps = [replace(step, only=only, sign=own or step.sign) for step in steps]
     return tuple((step,) for step in steps)
-
-
-def _only_parts(change: Change, step: SlopeOfAll) -> SlopeOfAll:
-    assert change.target is not None
-    own = {"up": 1, "down": -1}.get(change.target.way or "") if change.way is None else None
-    return replace(step, only=change.target.way, sign=own or step.sign)
 
 
 def stretch_candidates(

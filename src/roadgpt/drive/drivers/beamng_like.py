@@ -107,10 +107,8 @@ class BeamngLike:
         )
         # Like BeamNG's plan, this one considers slopes but not crests. Superelevation is an assumption.
         level = replace(line, crest=[0.0] * len(line.crest))
-        self._line, self._speed = (
-            line,
-            plan_speed(level, limits, highest_speeds(road, world, line, EASY_BRAKING)),
-        )
+        self._line = line
+        self._speed = plan_speed(level, limits, highest_speeds(road, world, line, EASY_BRAKING))
         self._signs, self._distance = StopSigns(road), KeepingDistance(line)
 
     def bend(self, road: "Road", world: "World") -> FloatArray:

@@ -29,9 +29,7 @@ class GoneError(Exception):
     def __init__(self, how: str, is_late: bool = False, is_blameless: bool = False) -> None:
         super().__init__(how)
         self.is_late = is_late
-        self.is_blameless = (
-            is_blameless  # true if it had ended before it was asked, so that no answer cost it
-        )
+        self.is_blameless = is_blameless  # true if it had ended before it was asked: no answer cost it
 
 
 class Child:
