@@ -1,18 +1,14 @@
 """Judges a Drive on a road, and returns a Verdict. Main function: ``judge``.
 
 The test oracle is that of the SBFT tool competition, with a tolerance of 0.5 by default; others have names in
-``roadgpt.road.ORACLES``. The car fails if the share of its bounding box outside its lane exceeds the
-tolerance at any control step, if it falls off the road, if it moves less than 1 m in 10 s, or if a time limit
-is exceeded. It passes if it comes within 8 m of the end of the road. Any other lane and the shoulder count as
-outside. If ``World.limits.lane_departure`` is set, the car also fails as soon as a front tyre crosses a lane
-marking. Every verdict states how far outside its lane the car was, on the scale of
-``roadgpt.verdict.verdict``. If the driver handed over, as some do near junctions, the verdict says who drove
-which share of the way, and whether the driver itself drove where the car failed.
+``roadgpt.road.ORACLES``. The car fails if the share of its bounding box outside its lane, to which neither
+other lanes nor the shoulder belong, exceeds the tolerance at any control step, if it falls off the road, if
+it moves less than 1 m in 10 s, or if a time limit is exceeded; with ``World.limits.lane_departure``, also as
+soon as a front tyre crosses a marking. It passes if it comes within 8 m of the end of the road.
 
-On a route through junctions a verdict also lists wrong turns, driving against the direction of the lane,
-tyres off the road, and stop signs that were passed without a stop. With others on the road it also lists
-collisions, each with whose fault it is, near misses, standing before a free way, and speeding
-(``roadgpt.verdict.incidents``); ``measure`` returns how critical a drive was.
+On a route through junctions, or among others, a verdict also lists what else went wrong
+(``roadgpt.verdict.incidents``), and of the first collision who had the way, whether it could have been
+avoided, and whose fault it was; ``measure`` returns how critical a drive was.
 """
 
 from importlib import import_module

@@ -15,7 +15,6 @@ No driver brakes harder than the friction circle and the grade allow at its plac
 ``docs/explanation/traffic.md`` has all definitions.
 """
 
-import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -28,22 +27,13 @@ from roadgpt.drive.company import EYE, SPACING, in_sight
 from roadgpt.network import legs_of, network_of
 from roadgpt.network.landscape import horizon_around
 from roadgpt.network.lanes import lanes_of
-from roadgpt.road.speed_profile import GRAVITY
 from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y
 from roadgpt.traffic.following import AFTER_CONTACT
-from roadgpt.verdict.careful import (
-    CAREFUL,
-    DRIVERS,
-    FULL,
-    LEAST_GRIP,
-    Driver,
-    Moment,
-    drive_on,
-    stopping_distance,
-)
+from roadgpt.traffic.way import LEAST_GRIP, Way
+from roadgpt.verdict.careful import CAREFUL, DRIVERS, FULL, Driver, Moment, drive_on, stopping_distance
 from roadgpt.verdict.contact import CORNER, middles, separation
 from roadgpt.verdict.incidents import OVER_BY, limits_at
-from roadgpt.verdict.measures import ACROSS, ALONG, Line, Measures, driven_lane, measure
+from roadgpt.verdict.measures import ACROSS, ALONG, Line, Measures, measure
 from roadgpt.verdict.verdict import PARTLY, Incident, percent
 
 if TYPE_CHECKING:
@@ -54,6 +44,7 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
+COLLIDES = "collides"
 FINE = 0.01  # s, from one step of a driver to the next
 WINDOW, AFTER = 10.0, 10.0  # s before and after the contact: from 130 km/h the four stop within 7 s
 BEHIND, OBJECT = 2.0, 0.6  # m: the eye behind the car's front; the height of an object
@@ -99,36 +90,29 @@ class Avoidance(NamedTuple):
 def avoidance_of(road: "Road", drive: "Drive", world: "World", collision: Incident) -> Avoidance:
     """Returns by whom the tested car's first collision could have been avoided."""
     meeting = _Encounter(road, drive, world, collision)
-    courses = {driver: _course(driver, meeting) for driver in DRIVERS}
-    by = tuple(driver.said for driver, (hits, _) in courses.items() if not hits)
-    measured = measure(road, drive, world)
-    criterion = world.limits.avoidable or ("r157" if _is_of_r157(measured, meeting) else "any")
+    courses = {driver.said: _course(driver, meeting) for driver in DRIVERS}
+    by = tuple(said for said, how in courses.items() if how != COLLIDES)
+    criterion = world.limits.avoidable or ("r157" if _is_of_r157(meeting) else "any")
     whose, whom = CRITERIA[criterion]
     is_avoidable = any(driver.said in by for driver in whom)
-    each = ", ".join(f"{driver.said} {how}" for driver, (_, how) in courses.items())
+    each = ", ".join(f"{said} {how}" for said, how in courses.items())
     said = f"{'' if is_avoidable else 'not '}avoidable by {whose}: {each}"
-    own = meeting.own_doing(
-        _given_gap(measured, meeting) if world.scene.actors else np.inf
-    ) or _braked_for_nothing(road, drive, world, measured, collision)
+    gap = meeting.gap[:, meeting.number]
+    before = np.flatnonzero(np.isinf(gap[:-1]))  # with the next the scene placed it ahead, or it came there
+    given = float(gap[before[-1] + 1 if len(before) else 0]) if world.scene.actors else np.inf
+    own = meeting.own_doing(given) or _braked_for_nothing(road, drive, world, meeting.measured, collision)
     said = f"avoidable: it {own}; {said}" if own else said
     return Avoidance(by, criterion, is_avoidable, bool(own), said)
 
 
-def _given_gap(measured: Measures, meeting: "_Encounter") -> float:
-    """Returns the gap in metres with which the scene placed the other ahead in the lane, or it came there."""
-    gap = measured.gap[measured.time <= meeting.at_time, meeting.number]
-    before = np.flatnonzero(np.isinf(gap[:-1]))
-    return float(gap[before[-1] + 1 if len(before) else 0])
-
-
-def _is_of_r157(measured: Measures, meeting: "_Encounter") -> bool:
+def _is_of_r157(meeting: "_Encounter") -> bool:
     """Whether somebody cut in or braked hard ahead, as UN R157 defines it, or stands where a vehicle that was
     ahead of the tested car left its lane."""
     if meeting.cuts_in or meeting.brakes_hard:
         return True
-    gap = measured.gap[measured.time <= meeting.at_time]
+    gap = meeting.gap
     is_between = np.isfinite(gap) & (gap < gap[:, [meeting.number]])
-    has_left = np.isinf(gap[-1]) & (measured.distance[len(gap) - 1] > 0)
+    has_left = np.isinf(gap[-1]) & (meeting.measured.distance[len(gap) - 1] > 0)
     return meeting.stands and bool((is_between.any(axis=0) & has_left).any())
 
 
@@ -165,16 +149,16 @@ def _braked_for_nothing(
     return "" if is_called else f"had braked with {most:.1f} m/s2 and nothing in its way called for it"
 
 
-def _course(driver: Driver, meeting: "_Encounter") -> tuple[bool, str]:
-    """Returns whether a driver collides, and how it ends in words."""
-    places, speeds = drive_on(driver, meeting.seen, meeting.free, FINE, meeting.first)
+def _course(driver: Driver, meeting: "_Encounter") -> str:
+    """Returns how it ends for a driver in words."""
+    places, speeds = drive_on(driver, meeting.seen, meeting.free, FINE, float(meeting.places[0]))
     ahead = meeting.along - places
     away = np.stack([ahead, meeting.t], axis=-1)
     apart = separation(away, np.zeros(len(ahead)), meeting.heading, meeting.half, meeting.halves).max(axis=-1)
     gap = (ahead - meeting.stretch - meeting.half[0])[(meeting.clearance < 0) & (ahead > 0)]
     if (apart < CORNER).any():
-        return True, "collides"
-    return False, f"stops {gap.min():.1f} m short" if len(gap) and not speeds[-1] else "avoids it"
+        return COLLIDES
+    return f"stops {gap.min():.1f} m short" if len(gap) and not speeds[-1] else "avoids it"
 
 
 class _Encounter:
@@ -193,7 +177,9 @@ class _Encounter:
         end = min([len(states), *gone[gone > hit]])
         if _is_stopped(states[hit:end, SPEED]):
             end = hit + 1
-        way, self.when, self.run, aside = _way(drive, driven_lane(road, world), STEP * begin, self.at_time)
+        self.measured = measure(road, drive, world)
+        self.gap = self.measured.gap[self.measured.time <= self.at_time]
+        way, self.when, self.run, aside = _way(drive, self.measured.lane, STEP * begin, self.at_time)
         other, (length, width, _) = states[begin:end], actor.size
         size = np.broadcast_to([length / 2, width / 2], (len(other), 2))
         boxes = way.boxes(other[:, X], other[:, Y], other[:, HEADING], size, other[:, SPEED])
@@ -230,10 +216,8 @@ class _Encounter:
         is_coming = np.arange(len(t)) >= (np.argmax(wanders) + steps if wanders.any() else np.inf)
         hard = np.append(0.0, np.diff(pace)) < -SUDDEN * STEP
         sudden = follows & (clearance < 0) & (np.convolve(hard, np.ones(steps))[: len(t)] > steps - 0.5)
-        self.stands, self.brakes_hard = (
-            bool(abs(other[hit - begin, SPEED]) < STILL),
-            bool(sudden[: len(seen)].any()),
-        )
+        self.stands = bool(abs(other[hit - begin, SPEED]) < STILL)
+        self.brakes_hard = bool(sudden[: len(seen)].any())
         self.cuts_in = bool(follows[start] and clearance[start] > 0 and follows[hit - begin])
         visible = np.concatenate([seen, np.ones(len(t) - len(seen), bool)])
 
@@ -250,29 +234,21 @@ class _Encounter:
         self._length = drive.car.length + length
 
         then = np.minimum(at, self.at_time)
-        # What the road gives, along the way: beyond the driven part, stations go on with it.
-        driven = np.interp(self.when, drive["time"], drive["s"])
-        grid = np.arange(0.0, way.run[-1] + ALONG, ALONG)
+        self._lane, driven = Way.along(road, world), np.interp(self.when, drive["time"], drive["s"])
+        grid = np.arange(0.0, way.run[-1] + ALONG, ALONG)  # beyond the driven part, stations go on with it
         s = np.interp(grid, self.run, driven) + np.maximum(grid - self.run[-1], 0.0)
-        s = np.clip(s, 0.0, road.length)
-        slope = np.arctan(road.grade(s))
-        circle = GRAVITY * np.cos(slope) * [world.friction_at(each) for each in s]
-        falls = GRAVITY * np.sin(slope)
-        self._grip = [
-            *zip((circle**2).tolist(), (road.curvature(s) ** 2).tolist(), falls.tolist(), strict=True)
-        ]
+        self._stations = [self._lane.from_road(each) for each in s.tolist()]
 
         eye = self._eye(since)
         sight = _sight(way, eye, visual_range(scene, "lane")) - BEHIND
-        in_sight = (grid >= eye) & (grid <= eye + max(sight, ALONG))
-        grip = float(np.clip(circle + falls, LEAST_GRIP, FULL)[in_sight].mean()) if in_sight.any() else FULL
+        ahead = [eye, *grid[(grid >= eye) & (grid <= eye + sight)].tolist()]
+        grip = float(np.mean([np.clip(self._grip(each, 0.0), LEAST_GRIP, FULL) for each in ahead]))
         speeds = np.arange(0.0, 80.0, 0.1)
         ways = [stopping_distance(speed, grip) for speed in speeds]
         self.recorded = np.interp(then, drive["time"], np.abs(drive["speed"]))
         limit = np.interp(then, drive["time"], limits_at(road, world, drive["s"]))
         self.free = np.minimum(self.recorded, np.minimum(limit, np.interp(sight, ways, speeds))).tolist()
         self.places = np.interp(then, self.when, self.run)
-        self.first = float(self.places[0])
         self._samples = range(0, max(int((self.at_time - since) / FINE), 1), round(STEP / FINE))
 
     def _eye(self, time: float) -> float:
@@ -291,30 +267,24 @@ class _Encounter:
         found = in_sight(states, sizes, eye, ground, self._horizon, order, seen, count, far)
         return number in order[:found]
 
+    def _grip(self, place: float, speed: float) -> float:
+        """With how many m/s^2 one brakes at most at a place of the way."""
+        station = self._stations[min(max(int(place / ALONG), 0), len(self._stations) - 1)]
+        left, _, falls = self._lane.room(station, speed)
+        return left + falls
+
     def seen(self, at: int, place: float, speed: float, gained: float) -> Moment:
         """Returns what a driver sees at a step, given its place, speed and acceleration."""
         along, stretch, clearance, pace, towards, follows, visible, perceived, sudden = self._rows[at]
-        circle, bend, falls = self._grip[min(max(int(place / ALONG), 0), len(self._grip) - 1)]
-        grip = math.sqrt(max(circle - speed**4 * bend, 0.0)) + falls
+        grip = self._grip(place, speed)
         if not visible:
             return Moment(np.inf, np.inf, self._length, speed, gained, pace, 0.0, False, grip=grip)
         gap, meets = along - stretch - place - self.half[0], False
         if not follows and (clearance < 0 or towards > 0):
             enters = max(clearance, 0.0) / towards if clearance > 0 else 0.0
             meets = along + stretch + pace * enters > place + speed * enters - self.half[0]
-        return Moment(
-            gap,
-            clearance,
-            self._length,
-            speed,
-            gained,
-            pace,
-            towards,
-            perceived and follows,
-            sudden,
-            meets,
-            grip,
-        )
+        way = (gap, clearance, self._length, speed, gained, pace, towards)
+        return Moment(*way, perceived and follows, sudden, meets, grip)
 
     def own_doing(self, given: float) -> str:
         """Returns how the tested car brought the collision about, in words; empty if it did not. The gap that
@@ -329,13 +299,8 @@ class _Encounter:
                 break
             least = max(moment.speed * np.interp(moment.speed, *FRONTS), 2.0)
             closes = moment.speed > moment.its_speed - 0.1
-            is_near = (
-                self._rows[at][5]
-                and moment.clearance < 0
-                and 0 < moment.gap < min(least, given) - NEARER
-                and closes
-            )
-            kept = kept + 1 if is_near else 0
+            is_near = moment.clearance < 0 < moment.gap < min(least, given) - NEARER
+            kept = kept + 1 if is_near and closes and self._rows[at][5] else 0
             if kept * STEP >= KEPT:
                 return f"kept {moment.gap:.1f} m, not the {least:.1f} m of UN R157"
         return ""

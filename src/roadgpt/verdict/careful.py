@@ -19,13 +19,14 @@ import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
+from roadgpt.traffic.way import LEAST_GRIP
+
 FULL, JERK = 0.774 * 9.81, 12.65  # m/s^2; m/s^3, with which it is reached in 0.6 s
 DELAY, RELEASED = 0.75, 0.4  # s; m/s^2, with the foot off the accelerator
 CRITICAL = 2.0  # s, of the time to collision
 REACTS, SYSTEM, BESIDE = 0.35, 6.0, 0.5  # Reg157: s, m/s^2, m
 GAINS, SIDEWAYS, WAVERS = 3.0, 1.0, 0.3  # RSS: m/s^2 within its delay, m/s^2 sideways, m
 GENTLY, HARD, LEADER, MARGIN = 4.0, 6.0, 7.0, 2.0  # FSM: m/s^2, of the leader, m
-LEAST_GRIP = 0.1  # m/s^2, that a driver counts on where there is less; ours
 SPARE = 0.1  # s, which Reg157 brakes earlier, and FSM wants between its passing and the other's coming
 
 
@@ -79,9 +80,8 @@ def _is_close(moment: Moment, time: float) -> bool:
 
 
 def _careful(moment: Moment) -> float:
-    fears = (
-        math.inf if moment.acceleration < -moment.least(FULL) / 2 else CRITICAL
-    )  # it brakes until nothing closes
+    is_braking = moment.acceleration < -moment.least(FULL) / 2  # then it does until nothing closes
+    fears = math.inf if is_braking else CRITICAL
     is_close = moment.is_perceived and _is_close(moment, fears)
     return FULL if is_close or moment.is_sudden or moment.is_crossing else 0.0
 

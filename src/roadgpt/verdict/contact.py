@@ -68,10 +68,8 @@ def contacts_of(drive: "Drive") -> tuple[Incident, ...]:
     if drive.others is None or not drive.others.actors:
         return ()
     from_step, actor, share = _first_contacts(drive)
-    found = [
-        _described(drive, int(i), int(k), float(u)) for i, k, u in zip(from_step, actor, share, strict=True)
-    ]
-    return tuple(sorted(found, key=lambda each: each.at_time))
+    rows = zip(from_step.tolist(), actor.tolist(), share.tolist(), strict=True)
+    return tuple(sorted((_described(drive, *row) for row in rows), key=lambda each: each.at_time))
 
 
 def _first_contacts(drive: "Drive") -> tuple[NDArray[np.int64], NDArray[np.int64], FloatArray]:
@@ -98,13 +96,8 @@ def _first_contacts(drive: "Drive") -> tuple[NDArray[np.int64], NDArray[np.int64
     while is_open.any():
         k = np.flatnonzero(is_open)
         u = share[k]
-        apart = separation(
-            away[k] + u[:, None] * change[k],
-            car[step[k], 2] + u * turn[k],
-            headings[k] + u * turns[k],
-            half,
-            halves[k],
-        ).max(axis=-1)
+        place, own, other = away[k] + u[:, None] * change[k], car[step[k], 2] + u * turn[k], headings[k]
+        apart = separation(place, own, other + u * turns[k], half, halves[k]).max(axis=-1)
         is_open[k] = apart > TOUCH
         share[k] += np.where(apart > TOUCH, apart / np.maximum(most[k], TOUCH / 2), 0.0)
         is_open[k] &= share[k] <= 1.0

@@ -18,10 +18,9 @@ from roadgpt.brief.visibility import weather_drawn
 from roadgpt.drive.company import heights_along, look, looks_of
 from roadgpt.drive.drive import COLUMNS
 from roadgpt.network.landscape import horizon_around
-from roadgpt.traffic.actor import HEADING, SPEED, STEP, Size, X, Y
+from roadgpt.traffic.actor import STEP, Size
 from roadgpt.traffic.rehearsal import rehearsed
 from roadgpt.traffic.traffic import NEVER
-from roadgpt.verdict.contact import middles
 from roadgpt.verdict.measures import measure
 from roadgpt.verdict.verdict import Outcome
 
@@ -79,22 +78,19 @@ def _wrong_speed(road: "Road", drive: "Drive", world: "World", until: float) -> 
 def _is_called(road: "Road", drive: "Drive", world: "World", where: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Returns at which of the times that are asked for somebody whom the driver sees calls for less."""
     assert drive.others is not None
-    actors, gaps, pose = drive.others.actors, measure(road, drive, world).gap, middles(drive)
-    looks, line = looks_of(actors, weather_drawn(world.scene, drive.seed)), heights_along(road)
+    measured = measure(road, drive, world)
+    along, across = np.moveaxis(measured.others.velocity, -1, 0)
+    far = NEAR * (world.first_speed + np.abs(across) + np.maximum(-along, 0.0))
+    is_near = (measured.others.along > measured.car.along[:, None]) & (measured.distance < far)
+    calls = is_near | (np.isfinite(measured.gap) & (along < measured.car.velocity[:, :1] + 1.0))
+    looks = looks_of(drive.others.actors, weather_drawn(world.scene, drive.seed))
     box = np.array([drive.car.length, drive.car.width, drive.car.ahead, drive.car.height])
-    horizon, count = horizon_around(road, world), len(actors)
+    line, horizon, count = heights_along(road), horizon_around(road, world), len(looks)
     states, order, seen = np.empty((count, 5)), np.empty(count, np.int64), np.empty((count, 7))
     found = np.zeros(len(where), bool)
-    for n in np.flatnonzero(where):
+    for n in np.flatnonzero(where & calls.any(axis=1)):
         step = min(int(np.searchsorted(drive["time"], n * STEP - 1e-6)), len(drive) - 1)
-        now, row = drive.others.states[n], np.array([drive[name][step] for name in COLUMNS])
+        now, row = drive.others.at(n * STEP), np.array([drive[name][step] for name in COLUMNS])
         some = order[: look(now, now, 0.0, looks, row, box, line, horizon, states, order, seen)[0]]
-        x, y, heading = pose[step]
-        ahead = (now[some, X] - x) * np.cos(heading) + (now[some, Y] - y) * np.sin(heading)
-        apart = np.hypot(now[some, X] - x, now[some, Y] - y) - (looks[some, 0] + drive.car.length) / 2
-        turned = now[some, HEADING] - heading
-        comes = now[some, SPEED] * (np.abs(np.sin(turned)) - np.minimum(np.cos(turned), 0.0))
-        far = NEAR * (world.first_speed + comes)
-        slower = np.isfinite(gaps[n, some]) & (now[some, SPEED] < drive["speed"][step] + 1.0)
-        found[n] = (slower | ((ahead > 0) & (apart < far))).any()
+        found[n] = calls[n, some].any()
     return found

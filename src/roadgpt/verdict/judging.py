@@ -97,18 +97,15 @@ def judge(
 ) -> Verdict:
     """Returns the Verdict of a drive: whether the car kept its lane, the margin, and where it first failed.
 
-    Only the first failure counts: if a drive continues after the car has left its lane (``keep_driving``),
-    the verdict is that it left its lane, whatever happens later. Within one step, the competition first
-    checks whether the car is at the goal, then whether it is stuck, then whether it is in its lane. The step
-    at which the car reaches the goal or is stuck is therefore ignored for the margin and ``max_oob``.
+    Only the first failure counts, also where a drive continues after it (``keep_driving``). The competition
+    checks whether the car is at the goal, or stuck, before whether it is in its lane; the step at which it is
+    so is therefore ignored for the margin and ``max_oob``.
 
-    On a route through junctions or among others, ``incidents`` lists what the car did wrong, as defined in
-    ``roadgpt.verdict.incidents``. If the car kept its lane up to the goal, the first wrong turn, wrong way or
-    missed stop is the failure. A tyre off the road is counted but fails no test.
-
-    With others on the road, the earliest of all failures is the cause, and a contact within 3 s is told in
-    the same sentence. A collision that no careful driver could have avoided, as
-    ``roadgpt.verdict.avoidable`` defines it, is UNAVOIDABLE.
+    On a route through junctions or among others, ``incidents`` lists what the car did wrong
+    (``roadgpt.verdict.incidents``). On a route, if the car kept its lane up to the goal, the first wrong
+    turn, wrong way or missed stop is the failure; with others on the road, the earliest of all failures is
+    the cause, and a contact within 3 s is told in the same sentence. A collision that could not have been
+    avoided (``roadgpt.verdict.avoidable``) is UNAVOIDABLE.
 
     ``known`` is the step that decides and the cause of failure, or None, if an earlier verdict has them;
     with others on the road they are found again.
@@ -117,18 +114,22 @@ def judge(
         UsageError: The drive was stopped at a smaller tolerance than ``world.limits.oob_tolerance``.
     """
     road = world.lay(road)
-    incidents: tuple[Incident, ...] | None = None
-    if only_road(road, world) is None or drive.others is not None:
+    has_incidents = only_road(road, world) is None or drive.others is not None
+    incidents = tuple[Incident, ...]()
+    if has_incidents:
         from roadgpt.verdict.incidents import incidents_of  # a single road does not need it
 
         incidents = incidents_of(road, drive, world)
     known = known if drive.others is None else None
     step, cause = known or _first_failure(road, drive, world)
     if cause is None or drive.others is not None:
-        step, cause = _first_of(incidents or (), drive, step, cause)
+        step, cause = _first_of(incidents, drive, step, cause)
     behind = _behind(road, drive, world) if cause in ("stuck", "timeout") else ""
     cause = None if behind else cause
-    contact = _contact_of(incidents or (), cause, drive["time"][step]) if cause else None
+    hits = [each for each in incidents if each.contact is not None]
+    first = hits[0] if hits else None
+    soon = (each for each in hits if 0 <= each.at_time - drive["time"][step] <= SOON)
+    contact = first if cause == "collision" else next(soon, None) if cause else None
     every = margins(road, drive, world)
     least = float(every[: drive.lane_steps].min())
     side: Side | None = None
@@ -139,34 +140,32 @@ def judge(
     beyond = most_beyond(road, drive, world)
     handed_to = drive.handed_to(step) if cause else None
     outcome: Outcome = "FAIL" if cause else "PASS"
-    found, avoidable, excuse = None, None, ""
-    gap, ttc = _least(road, drive, world, incidents or ())
+    found, avoidable, excuse, law, fault = None, None, "", None, None
+    gap, ttc = _least(road, drive, world, first)
     is_yielding = handed_to and cause in GIVES_WAY  # what came of it may be a matter of the brakes
-    hit = _contact_of(incidents or (), "collision", 0.0) if is_yielding or cause == "collision" else None
-    if hit is not None:
+    if first is not None and (is_yielding or cause == "collision"):
         from roadgpt.verdict.avoidable import avoidance_of
 
-        found = avoidance_of(road, drive, world, hit)
+        found = avoidance_of(road, drive, world, first)
         is_avoidable = found.is_avoidable or found.is_own_doing
         avoidable = is_avoidable if cause == "collision" else None
         outcome = "FAIL" if is_avoidable or cause != "collision" else "UNAVOIDABLE"
-    law, fault, first = None, None, _contact_of(incidents or (), "collision", 0.0)
     if first is not None and first.contact is not None:
         from roadgpt.verdict.law import fault_of, law_of
 
-        law = law_of(road, drive, world, incidents or ())
+        law = law_of(road, drive, world, incidents)
         fault = fault_of(law, first.contact, bool(found and found.is_own_doing))
     if handed_to and outcome == "FAIL":
         excuse = f"{handed_to} drove where the car failed, so the failure is not {drive.driver}'s"
-        if hit and found and found.is_avoidable and _asks_for_emergency_braking(drive, hit):
+        if first and found and found.is_avoidable and _asks_for_emergency_braking(drive, first):
             excuse = f"{handed_to} drove there, but emergency braking stays {drive.driver}'s"
             handed_to = None
     if cause is None:
         description = _kept(drive, world, least, beyond, behind)
     else:
-        whom = next((each.other for each in incidents or () if each.kind == cause), None)
+        whom = next((each.other for each in incidents if each.kind == cause), None)
         description = _failed(road, drive, world, step, cause, side, contact, whom, fault)
-    untold = [each for each in incidents or () if each is not contact or cause == "collision"]
+    untold = [each for each in incidents if each is not contact or cause == "collision"]
     description += _counted(untold, cause) + _who_drove(drive.shares, excuse)
     s, x, y, time = (float(drive[name][step]) for name in ("s", "x", "y", "time"))
     description += f"; {found.said}" if found else ""
@@ -193,7 +192,7 @@ def judge(
         at_xy=(x, y) if cause else None,
         at_time=time if cause else None,
         side=side,
-        incidents=incidents,
+        incidents=incidents if has_incidents else None,
         least_gap=gap,
         least_ttc=ttc,
         own_share=drive.shares.get(drive.driver),
@@ -207,14 +206,14 @@ def judge(
 
 
 def _least(
-    road: "Road", drive: "Drive", world: "World", incidents: Sequence[Incident]
+    road: "Road", drive: "Drive", world: "World", hit: Incident | None
 ) -> tuple[float | None, float | None]:
     """Returns the least gap in metres and the least time to collision in seconds up to the first contact."""
     if drive.others is None:
         return None, None
     from roadgpt.verdict.measures import measure
 
-    measured, hit = measure(road, drive, world), _contact_of(incidents, "collision", 0.0)
+    measured = measure(road, drive, world)
     before = measured.time <= (np.inf if hit is None else hit.at_time)
     least = [float(each[before].min(initial=np.inf)) for each in (measured.gap, measured.ttc)]
     gap, ttc = (round(each, 3) if np.isfinite(each) else None for each in least)
@@ -222,10 +221,8 @@ def _least(
 
 
 def most_beyond(road: "Road", drive: "Drive", world: "World") -> float:
-    """Returns the largest distance in metres by which the car's body extended beyond a lane marking.
-
-    The distance is measured from the outer edge of the marking; it is 0 if the car never extended beyond it.
-    """
+    """Returns the largest distance in metres by which the car's body extended beyond the outer edge of a lane
+    marking; 0 if it never did."""
     from roadgpt.drive.lane_position import MarkingMonitor
 
     body = MarkingMonitor.for_body(road, world, drive.car).along(drive, floor=0.0)
@@ -255,18 +252,10 @@ def _first_of(
 ) -> tuple[int, Cause | None]:
     """Returns the step and the cause of the first failing incident; ``step`` and ``cause`` if there is none,
     or if they came first."""
-    for each in incidents:
-        found = next((name for name in FAILING if name == each.kind), None)
-        if found is not None:
-            first = min(int(np.searchsorted(drive["time"], each.at_time)), len(drive) - 1)
-            return (first, found) if cause is None or first <= step else (step, cause)
+    for each, name in ((each, name) for each in incidents for name in FAILING if name == each.kind):
+        first = min(int(np.searchsorted(drive["time"], each.at_time)), len(drive) - 1)
+        return (first, name) if cause is None or first <= step else (step, cause)
     return step, cause
-
-
-def _contact_of(incidents: Sequence[Incident], cause: Cause | None, time: float) -> Incident | None:
-    """Returns the contact that is the cause of a failure at ``time``, or the first one soon after it."""
-    hits = [each for each in incidents if each.kind == "collision"]
-    return next((each for each in hits if cause == "collision" or 0 <= each.at_time - time <= SOON), None)
 
 
 def _counted(incidents: Sequence[Incident], cause: Cause | None) -> str:
@@ -335,16 +324,9 @@ def _kept(drive: "Drive", world: "World", margin: float, beyond: float, behind: 
 
 
 def _failed(
-    road: "Road",
-    drive: "Drive",
-    world: "World",
-    step: int,
-    cause: Cause,
-    side: Side | None,
-    contact: Incident | None,
-    whom: str | None,
-    fault: Fault | None,
-) -> str:
+    road: "Road", drive: "Drive", world: "World", step: int, cause: Cause, side: Side | None,
+    contact: Incident | None, whom: str | None, fault: Fault | None,
+) -> str:  # fmt: skip
     profile = world.profile_of(road)
     is_beside = (
         side == ("right" if profile.left_hand else "left") and profile.driven_id != profile.along_ids[0]

@@ -19,10 +19,10 @@ from roadgpt.brief.scene import VEHICLES
 from roadgpt.network import legs_of, network_of, only_road
 from roadgpt.network.lanes import lanes_of
 from roadgpt.network.markings import CROSSED
-from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y
-from roadgpt.verdict.contact import CORNER, middles
+from roadgpt.traffic.actor import SPEED, STEP, STILL, X, Y
+from roadgpt.verdict.contact import CORNER
 from roadgpt.verdict.incidents import OVER, OVER_BY, STOOD, STOP_WITHIN, TOO_FAST, limits_at
-from roadgpt.verdict.measures import ACROSS, driven_lane
+from roadgpt.verdict.measures import ACROSS, measure
 from roadgpt.verdict.right_of_way import LATER, who_drives
 from roadgpt.verdict.verdict import STANDS, Contact, Fault, Incident, Law, Offence, Party
 
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 LIABLE = (*VEHICLES, "adult", "child")
 BEFORE = 15.0  # m before a junction, within which its lines lie
 RECENT = 3.0  # s before the contact
+BACKS = 0.5  # s: more than rolling back
 BEGINS, BRAKES, APART = 0.4, 3.0, 1.0  # UN R79, 5.6.4.7: s, m/s^2, s
 
 Found = tuple[Party | None, set[Offence], set[Offence]]
@@ -50,16 +51,21 @@ def law_of(road: "Road", drive: "Drive", world: "World", incidents: Sequence[Inc
     recent = (drive["time"] > hit.at_time - RECENT) & (drive["time"] <= hit.at_time)
     if _is_fast(drive["speed"][recent], limits_at(road, world, drive["s"][recent]), drive["time"][1]):
         own.add("speed")
-    last = int(hit.at_time / STEP + 1e-9)
-    states, limit = drive.others.states[: last + 1, number], limits_at(road, world, np.array([hit.at_s]))
+    states = drive.others.states[: _sample(hit) + 1, number]
+    limit = float(limits_at(road, world, np.array([hit.at_s]))[0])
     if only_road(road, world) is None:
         (places,) = lanes_of(network_of(road, world)).places(states[-1:, [X, Y]])
         limits = (each.lane.member.profile.lanes[each.lane.id.lane].speed_limit for each in places)
-        limit = np.array([max((each or world.limits.speed_limit for each in limits), default=np.inf)])
+        limit = max((each or world.limits.speed_limit for each in limits), default=np.inf)
     if _is_fast(np.abs(states[-round(RECENT / STEP) :, SPEED]), limit, STEP):
         its.add("speed")
     is_liable = drive.others.actors[number].kind in LIABLE
     return Law(way, tuple(sorted(own)), tuple(sorted(its)) if is_liable else ())
+
+
+def _sample(hit: Incident) -> int:
+    """The last sample of the others before a contact."""
+    return int(hit.at_time / STEP + 1e-9)
 
 
 def fault_of(law: Law, contact: Contact, is_own_doing: bool) -> Fault:
@@ -123,32 +129,25 @@ def _at_junction(
 
 def _on_road(road: "Road", drive: "Drive", world: "World", hit: Incident, number: int) -> Found:
     """Returns what the rules of a road say: who was in the lane in which the two touched, and since when."""
-    others, contact, line = drive.others, hit.contact, driven_lane(road, world)
-    assert others is not None
+    measured, contact, last = measure(road, drive, world), hit.contact, _sample(hit)
+    assert drive.others is not None
     assert contact is not None
-    actor, last = others.actors[number], int(hit.at_time / STEP + 1e-9)
-    states = others.states[: last + 1, number]
-    states = states[np.flatnonzero(np.isnan(states[:, X])).max(initial=-1) + 1 :]
-    half = np.broadcast_to(np.array(actor.size[:2]) / 2, (len(states), 2))
-    boxes = line.boxes(states[:, X], states[:, Y], states[:, HEADING], half, states[:, SPEED])
-    when = STEP * np.arange(last + 1 - len(states), last + 1)
-    car = [np.interp(when, drive["time"], each) for each in (*middles(drive).T, drive["speed"], drive["vx"])]
-    size = np.broadcast_to([[drive.car.length / 2, drive.car.width / 2]], (len(when), 2))
-    mine = line.boxes(car[0], car[1], car[2], size, car[3])
+    line, kind = measured.lane, drive.others.actors[number].kind
+    mine, boxes = measured.car[: last + 1], measured.others[: last + 1, number]
     x, y, zero = (np.array([each]) for each in (*contact.xy, 0.0))
-    spot = line.boxes(x, y, zero, half[:1], zero)
+    spot = line.boxes(x, y, zero, np.zeros((1, 2)), zero)
     reach = float(np.interp(spot.along[0], line.run, line.width)) / 2
-    is_own = abs(float(spot.t[0])) < reach - CORNER
     along, across = boxes.velocity[-1]
     stands = np.hypot(along, across) <= STILL
-    if car[4][-5:].max() < -STILL:  # for half a second: more than rolling back
+    lately = (drive["time"] > hit.at_time - BACKS) & (drive["time"] <= hit.at_time)
+    if drive["vx"][lately].max() < -STILL:
         return "other", {"wrong way"}, set()
-    if not is_own:
+    if abs(float(spot.t[0])) >= reach - CORNER:
         is_over = abs(mine.t[-1]) > reach and along < 0
         return "other", {"wrong way" if is_over else "lane"}, set()
     if not stands and abs(across) > ACROSS * np.hypot(along, across):
         s, crossed = float(spot.along[0]), network_of(road, world).crossed
-        is_on_crosswalk = actor.kind in ("adult", "child") and any(
+        is_on_crosswalk = kind in ("adult", "child") and any(
             (way.departure in crossed and way.end <= s <= way.end + CROSSED)
             or (way.arrival in crossed and way.start - CROSSED <= s <= way.start
                 and not (drive.lights and way.control == "lights"))
@@ -157,13 +156,14 @@ def _on_road(road: "Road", drive: "Drive", world: "World", hit: Incident, number
         return ("other", {"priority"}, set()) if is_on_crosswalk else ("ego", set(), {"priority"})
     if not stands and along < 0:
         return "ego", set(), {"wrong way" if abs(boxes.t[-1]) < reach else "lane"}
-    if contact.face == "rear" or car[3][-1] <= STANDS:
+    if contact.face == "rear" or contact.speed <= STANDS:
         return "ego", set(), {"distance"}
     if contact.face != "front":
         return "ego", set(), {"lane"}
-    came = min(int(np.flatnonzero(~line.holds(boxes)).max(initial=-1)) + 1, len(when) - 1)
-    closing = max(mine.velocity[came, 0] - boxes.velocity[came, 0], 0.0)
-    gap = boxes.along[came] - boxes.reach[0][came] - mine.along[came] - drive.car.length / 2
-    if came and gap < closing * BEGINS + closing**2 / (2 * BRAKES) + boxes.velocity[came, 0] * APART:
-        return "ego", set(), {"lane" if actor.kind in VEHICLES else "priority"}
+    out = np.flatnonzero(~line.holds(boxes) & ~np.isnan(boxes.t))
+    if len(out) and (came := int(out[-1]) + 1) <= last:
+        closing = max(mine.velocity[came, 0] - boxes.velocity[came, 0], 0.0)
+        gap = boxes.along[came] - boxes.reach[0][came] - mine.along[came] - drive.car.length / 2
+        if gap < closing * BEGINS + closing**2 / (2 * BRAKES) + boxes.velocity[came, 0] * APART:
+            return "ego", set(), {"lane" if kind in VEHICLES else "priority"}
     return "other", {"distance"}, set()

@@ -23,7 +23,8 @@ boxes cover the same offsets, wherever the tested car is.
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,6 +45,27 @@ NEAR = 150.0  # m, beyond which others are not measured: 4 s at 130 km/h
 ALONG = 0.5  # m between points of the middle of the lane
 LEAST_STRETCH = 0.2  # lower bound of the metres beside the lane per metre of it, on the inside of a bend
 ACROSS = np.sin(np.radians(30.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Boxes:
+    """Boxes along a Line, and across it; metres, radians, m/s."""
+
+    along: FloatArray
+    t: FloatArray
+    heading: FloatArray
+    half: FloatArray  # (..., 2): half of length and width
+    velocity: FloatArray  # (..., 2): along and across
+
+    def __getitem__(self, rows: Any) -> "Boxes":
+        return Boxes(*(part[rows] for part in vars(self).values()))
+
+    @property
+    def reach(self) -> tuple[FloatArray, FloatArray]:
+        """Half of what the box covers along and across."""
+        c, s = np.abs(np.cos(self.heading)), np.abs(np.sin(self.heading))
+        length, width = self.half[..., 0], self.half[..., 1]
+        return length * c + width * s, length * s + width * c
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,30 +92,14 @@ class Measures:
     pet_time: FloatArray
     """When the first one had left the area, in seconds, shape (actors,); NaN without a post-encroachment
     time."""
+    lane: "Line"
+    """The middle of the driven lane, along which all are measured."""
+    car: Boxes
+    others: Boxes
+    """NaN where the other is not there or more than NEAR away."""
 
 
-@dataclass(frozen=True, eq=False)
-class Boxes:
-    """Boxes along a Line, and across it; metres, radians, m/s."""
-
-    along: FloatArray
-    t: FloatArray
-    heading: FloatArray
-    half: FloatArray  # (..., 2): half of length and width
-    velocity: FloatArray  # (..., 2): along and across
-
-    def __getitem__(self, rows: NDArray[np.int64]) -> "Boxes":
-        parts = (self.along, self.t, self.heading, self.half, self.velocity)
-        return Boxes(*(each[rows] for each in parts))
-
-    @property
-    def reach(self) -> tuple[FloatArray, FloatArray]:
-        """Half of what the box covers along and across."""
-        c, s = np.abs(np.cos(self.heading)), np.abs(np.sin(self.heading))
-        length, width = self.half[..., 0], self.half[..., 1]
-        return length * c + width * s, length * s + width * c
-
-
+@lru_cache(maxsize=1)  # a collision is asked for them five times
 def measure(road: "Road", drive: "Drive", world: "World") -> Measures:
     """Returns the measures of a drive with others on the road."""
     assert drive.others is not None
@@ -133,7 +139,7 @@ def measure(road: "Road", drive: "Drive", world: "World") -> Measures:
     pets = [_pet(time, car, others, step, who == each) for each in range(len(sizes))]
 
     def spread(values: FloatArray, without: float = np.inf) -> FloatArray:
-        out = np.full(near.shape, without)
+        out = np.full(near.shape + values.shape[1:], without)
         out[near] = values
         return out
 
@@ -147,6 +153,9 @@ def measure(road: "Road", drive: "Drive", world: "World") -> Measures:
         spread(_distance(away[near], heading[step], own.half, found[:, HEADING], others.half)),
         np.array([each[0] for each in pets]),
         np.array([each[1] for each in pets]),
+        lane,
+        car,
+        Boxes(*(spread(part, np.nan) for part in vars(others).values())),
     )
 
 
@@ -166,14 +175,9 @@ class Line:
         self.tree = cKDTree(self.middle)
 
     def boxes(
-        self,
-        x: FloatArray,
-        y: FloatArray,
-        heading: FloatArray,
-        half: FloatArray,
-        speed: FloatArray,
+        self, x: FloatArray, y: FloatArray, heading: FloatArray, half: FloatArray, speed: FloatArray,
         slip: FloatArray | float = 0.0,
-    ) -> Boxes:
+    ) -> Boxes:  # fmt: skip
         """Returns boxes at these places; ``slip`` is that of their motion against their heading."""
         _, i = self.tree.query(np.stack([x, y], axis=-1))
         cos, sin = np.cos(self.heading[i]), np.sin(self.heading[i])

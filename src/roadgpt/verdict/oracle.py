@@ -40,19 +40,13 @@ class Oracle(NamedTuple):
     """How far the car was out of its lane during a drive: arrays of shape ``(n,)``, one value per step."""
 
     is_oob: NDArray[np.bool_]
-    """Whether the car is out of its lane, as ``is_outside`` defines it.
-
-    The value is False at the step at which the car reaches the goal or is stuck, because the competition
-    does not check the lane at this step.
-    """
+    """Whether the car is out of its lane, as ``is_outside`` defines it; not at the step at which it reaches
+    the goal or is stuck, at which the competition does not check the lane."""
     oob_counter: NDArray[np.int64]
     """Number of times the car has gone out of its lane so far."""
     max_oob_percentage: NDArray[np.float64]
-    """Largest share of the car outside its lane, 0 to 1, since it last went out of its lane.
-
-    It is 0 until the car first goes out of its lane, and restarts each time it goes out again, as in the
-    competition's code.
-    """
+    """Largest share of the car outside its lane, 0 to 1, since it last went out of it, as in the
+    competition's code; 0 until it first does."""
     oob_distance: NDArray[np.float64]
     """Half the width of the lane minus the distance of the car's centre from the lane's middle, in metres."""
     oob_percentage: NDArray[np.float64]
@@ -77,12 +71,8 @@ def consult(road: "Road", drive: "Drive", world: "World") -> Oracle:
 
 
 def is_outside(road: "Road", drive: "Drive", world: "World") -> NDArray[np.bool_]:
-    """Returns for each step whether the car is out of its lane.
-
-    The car is out of its lane if the share of its bounding box outside the lane exceeds the tolerance. If
-    ``World.limits.lane_departure`` is set, it is also out of its lane while a front tyre is beyond a lane
-    marking.
-    """
+    """Returns for each step whether the share of the car's bounding box outside its lane exceeds the
+    tolerance, or a front tyre is beyond a lane marking, if ``World.limits.lane_departure`` is set."""
     out: NDArray[np.bool_] = drive["outside"] > world.limits.oob_tolerance
     out |= has_departed(road, drive, world)
     out[drive.lane_steps :] = False
@@ -90,10 +80,8 @@ def is_outside(road: "Road", drive: "Drive", world: "World") -> NDArray[np.bool_
 
 
 def has_departed(road: "Road", drive: "Drive", world: "World") -> NDArray[np.bool_]:
-    """Returns for each step whether the outer edge of a front tyre is beyond the outer edge of a marking.
-
-    The result is False at every step if ``world.limits.lane_departure`` is not set.
-    """
+    """Returns for each step whether the outer edge of a front tyre is beyond the outer edge of a marking;
+    never if ``world.limits.lane_departure`` is not set."""
     if not world.limits.lane_departure:
         return np.zeros(len(drive), bool)
     from roadgpt.drive.lane_position import MarkingMonitor
@@ -109,16 +97,12 @@ class LateralExtent(NamedTuple):
     """The extent of the car's bounding box across the lane at each of the n steps of a drive."""
 
     middle: FloatArray
-    """Offset of the box's middle in metres to the left of the centre line; shape ``(n,)``.
-
-    It is corrected for the curvature of the lane under the box.
-    """
+    """Offset of the box's middle in metres to the left of the centre line, corrected for the curvature of the
+    lane under the box; shape ``(n,)``."""
     long: FloatArray
-    """Half of the larger projection in metres, ``(n,)``. The two projections are those of the box's length
-    and of the box's width across the lane.
-    """
+    """Half of the larger of the projections of its length and its width across the lane, in metres."""
     short: FloatArray
-    """Half of the smaller projection in metres, ``(n,)``."""
+    """Half of the smaller one."""
 
 
 def lateral_extent(road: "Road", drive: "Drive") -> LateralExtent:
@@ -136,11 +120,8 @@ def lateral_extent(road: "Road", drive: "Drive") -> LateralExtent:
 
 
 def allowed_overhang(tolerance: float, box: LateralExtent) -> FloatArray:
-    """Returns how far beyond the lane's edge the middle of the box may be before the car fails.
-
-    The distance is in metres, positive outwards. At this distance, the share of the box outside the lane
-    equals ``tolerance`` (0 to 1).
-    """
+    """Returns how far beyond the lane's edge, in metres outwards, the middle of the box is when the share of
+    the box outside the lane equals ``tolerance`` (0 to 1), and the car fails."""
     tail = min(tolerance, 1 - tolerance)
     a, b = box.long, box.short
     in_slope = a + b - np.sqrt(8 * a * b * tail)
@@ -150,11 +131,8 @@ def allowed_overhang(tolerance: float, box: LateralExtent) -> FloatArray:
 
 
 def margins(road: "Road", drive: "Drive", world: "World") -> FloatArray:
-    """Returns the margin in metres at every step of a drive, shape ``(n,)``.
-
-    It is negative exactly where the car is out of its lane. It is 0 where the car still counts as in its
-    lane, but its box extends beyond the carriageway and its shoulder.
-    """
+    """Returns the margin in metres at every step of a drive, shape ``(n,)``: negative exactly where the car
+    is out of its lane, and 0 where it is not, but its box extends beyond the carriageway and its shoulder."""
     box = lateral_extent(road, drive)
     s, profile = drive["s"], world.profile_of(road)
     half, middle, rims = profile.width(s) / 2, profile.middle(s), profile.rims(s)

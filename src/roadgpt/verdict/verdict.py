@@ -5,10 +5,11 @@ terminal output. A car that passes a test may have been partly outside its lane,
 0.5, such as that of RoadGPT's thesis, even mostly.
 """
 
+import json
 import math
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from typing import Annotated, Any, ClassVar, Literal, Self, get_args
 
 from pydantic import AliasChoices, ConfigDict, Field, ValidationError
@@ -105,55 +106,32 @@ class Incident:
     contact: Contact | None = None
     """How they touched in a collision; None for other kinds."""
 
-    def to_json(self) -> dict[str, Any]:
-        """Returns the fields as JSON data, ``other`` and ``contact`` only where they are not None."""
-        data = {key: value for key, value in asdict(self).items() if value is not None}
-        data["at_xy"] = list(self.at_xy)
-        if self.contact is not None:
-            data["contact"]["xy"] = list(self.contact.xy)
-        return data
-
 
 @dataclass(frozen=True)
 class Verdict:
-    """The result of one drive.
-
-    The place of a failure is that of the car's centre of gravity at the first failure.
-    """
+    """The result of one drive. The place of a failure is that of the car's centre of gravity."""
 
     __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(extra="forbid", allow_inf_nan=False)
 
     outcome: Outcome
     cause: Cause | None
     """Cause of the failure, or of what was unavoidable; None if the car kept its lane and reached the goal.
-
-    "wrong turn", "wrong way" and "stop line" occur only on routes through junctions, if nothing else failed,
-    or if others are on the road; "collision" only if others are, and "red light" and "failure to yield" only
-    on routes with others.
-    """
+    On routes, "wrong turn", "wrong way" and "stop line" are one if nothing else failed, or among others."""
     description: str
     """The result of the drive in one sentence."""
     sbft_description: str
     """The text that the SBFT competition would give as ``description``, without the simulation's name."""
     max_oob: float
-    """Largest share of the car's bounding box outside its lane during the drive, 0 to 1.
-
-    The step at which the car reached the goal or was stuck is not included.
-    """
+    """Largest share of the car's bounding box outside its lane during the drive, 0 to 1, without the step at
+    which it reached the goal or was stuck."""
     margin: float
-    """Smallest margin during the drive in metres, as defined in `roadgpt.verdict.oracle`.
-
-    The margin is how far the car could have been shifted sideways before failing. It is negative exactly if
-    the car left its lane or fell.
-    """
+    """Smallest margin during the drive in metres: how far the car could have been shifted sideways before
+    failing (``roadgpt.verdict.oracle``). It is negative exactly if the car left its lane or fell."""
     oob_counter: int
     """Number of times the car went out of its lane."""
     beyond: float = 0.0
-    """Largest distance in metres by which the car's body extended beyond a marking of its lane.
-
-    The distance is measured from the outer edge of the marking, over the same steps as ``max_oob``; it is 0
-    if the car never extended beyond a marking.
-    """
+    """Largest distance in metres by which the car's body extended beyond the outer edge of a marking of its
+    lane, over the same steps as ``max_oob``; 0 if it never did."""
     at_s: float | None = None
     """Station in metres where the car failed; None if the car did not fail."""
     at_xy: tuple[float, float] | None = None
@@ -164,10 +142,7 @@ class Verdict:
     """The side on which the car left its lane or fell; None for other results."""
     incidents: tuple[Incident, ...] | None = None
     """What the car did wrong on a route through junctions or with others on the road, in order of time; None
-    on a single road without others.
-
-    A drive that passed may have incidents, too, because a tyre off the road fails no test.
-    """
+    on a single road without others. A tyre off the road, for one, fails no test."""
     least_gap: float | None = None
     """The least distance in metres, up to the first contact, from bumper to bumper to somebody ahead in the
     same lane; 0 at a collision, None if nobody ever was ahead in the same lane."""
@@ -191,8 +166,7 @@ class Verdict:
     "rss", "fsm" or "any" of them; None for other causes."""
     handed_to: str | None = None
     """Who drove where the car failed, if the driver had handed over: such a failure is not one of the driver.
-    None for other failures, and if the car did not fail.
-    """
+    None for other failures, and if the car did not fail."""
 
     def __repr__(self) -> str:
         told = (f"{name}={value!r}" for name, value in vars(self).items() if value is not None)
@@ -234,17 +208,17 @@ class Verdict:
     def to_json(self) -> dict[str, Any]:
         """Returns the fields and ``kept`` as JSON data, for ``Verdict.from_json``.
 
-        The fields from ``incidents`` on are left out where they are None.
+        The fields from ``incidents`` on, and ``other`` and ``contact`` of incidents, are left out where they
+        are None.
         """
         names = [each.name for each in fields(self)]
-        optional = names[names.index("incidents") :]
-        data = {key: value for key, value in asdict(self).items() if value is not None or key not in optional}
-        if self.incidents is not None:
-            data["incidents"] = [each.to_json() for each in self.incidents]
-        if self.avoided_by is not None:
-            data["avoided_by"] = list(self.avoided_by)
-        data["at_xy"] = None if self.at_xy is None else list(self.at_xy)
-        return {"kept": self.kept, **data}
+        optional = {*names[names.index("incidents") :], "other", "contact"}
+
+        def told(part: object) -> dict[str, Any]:
+            return {key: each for key, each in vars(part).items() if each is not None or key not in optional}
+
+        data: dict[str, Any] = json.loads(json.dumps({"kept": self.kept, **told(self)}, default=told))
+        return data
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Self:
@@ -255,12 +229,12 @@ class Verdict:
         """
         try:
             return strictly(cls, {key: value for key, value in data.items() if key != "kept"})
-        except ValidationError as error:
-            first = error.errors(include_url=False)[0]
-            said = f"{'.'.join(map(str, first['loc']))}: {first['msg']}"
-            raise UsageError(f"the verdict cannot be read ({said}): judge the drive again") from error
         except (AttributeError, TypeError, ValueError) as error:
-            raise UsageError(f"the verdict cannot be read ({error}): judge the drive again") from error
+            said = str(error)
+            if isinstance(error, ValidationError):
+                first = error.errors(include_url=False)[0]
+                said = f"{'.'.join(map(str, first['loc']))}: {first['msg']}"
+            raise UsageError(f"the verdict cannot be read ({said}): judge the drive again") from error
 
 
 def severity(share: float) -> Severity:
@@ -279,10 +253,8 @@ def graded(outcome: str, share: float | None) -> str:
 
 
 def percent(share: float) -> str:
-    """Returns a share (0 to 1) as text in per cent.
-
-    Only exactly 0 becomes "0 %", and only exactly 1 becomes "100 %"; less than
-    0.001 % is rounded up to it."""
+    """Returns a share (0 to 1) in per cent: only exactly 0 as "0 %" and 1 as "100 %", and less than 0.001 %
+    as that."""
     told = f"{100 * share:.0f}"
     if told == "0" and share > 0:
         told = f"{max(100 * share, 0.001):.1g}"
