@@ -172,17 +172,6 @@ def drawn(thing: Role | Action, rng: np.random.Generator) -> dict[str, float]:
     return found
 
 
-class Limit(NamedTuple):
-    """An acceleration of an action that was more than is possible, in m/s^2."""
-
-    asked: float
-    most: float
-    where: str
-    """Sideways, or else nothing; and at which friction and grade."""
-    is_prescribed: bool
-    """Whether the scene says the number, and the road does not give it."""
-
-
 def _slides(deed: Deed, by: float, most: float) -> float:
     """Returns how many seconds a movement sideways by some metres lasts, with at most so many m/s^2."""
     lasts = math.pi / 2 * abs(by) / deed.n.get("lateral", LATERAL[deed.what])
@@ -205,13 +194,10 @@ class Act:
         self, stage: Stage, path: Way, role: Role, car: Car, rng: np.random.Generator,
         events: dict[tuple[str, ...], float], name: tuple[str, str], alike: "list[Act]",
     ) -> None:  # fmt: skip
-        """Draws its numbers, and places it as seen from the tested car, whose lane is ``path``. Raises
-        SceneError if the road has no such place.
-
-        Args:
-            events: when what has begun and ended in the scene.
-            name: how events call it.
-            alike: those of the same role so far, behind whom it is. Only the first one makes events."""
+        """Draws its numbers, and places it as seen from the tested car, whose lane is ``path``, behind those
+        of the same role so far, ``alike``, of whom only the first one makes events: ``events`` holds when
+        what has begun and ended in the scene, and calls it ``name``. Raises SceneError if the road has no
+        such place."""
         self.road, self.world, self.path, self.role = stage.road, stage.world, path, role
         self.kind, self.where, self.side, self.size = role.kind, role.where, role.side, SIZES[role.kind]
         self.time, self.car, self.start = 0.0, car, car.s
@@ -291,18 +277,16 @@ class Act:
         self.hits: bool | None = None
         """Whether it hit the tested car from behind when it first touched it; None if it has not."""
         self.ahead: tuple[float, float] | None = None
-        """How far it is to who is ahead of it in its lane, in metres, and how fast that moves along it."""
+        """How far it is to who is ahead of it on its way, in metres, and how fast that moves as it does."""
         self.pull, self.begun = CHANGE, 0
         self.shown = set[int]()
         """The numbers of the actions that it did while it was there."""
-        self.limited: dict[int, Limit] = {}
-        """What was limited of which action."""
+        self.limited: dict[int, tuple[str, bool]] = {}
+        """Of the actions that ask for more than there is, in words with how much less they were done, and
+        whether the scene says the number and the road does not give it."""
         self.phases: list[Phase] = []
         self.clock, self.slid, self.slope = 0.0, 0.0, 0.0
         self.signs: dict[int, float] = {}
-        if self.copy and self.crosses and self.meeting:
-            aside = math.sin(path.pose(self.meeting.car)[3] - self.way.pose(self.meeting.own)[3])
-            self.t = self.copy * (self.size.width + 0.5) * math.copysign(1.0, aside)
 
     def put(self, s: float) -> None:
         """Puts it at a station of its way, with a speed that is possible there."""
@@ -314,10 +298,11 @@ class Act:
         """Moves it away from another in whose place it would be: in its lane away from the tested car, on a
         way of its own back, or aside if it stands there. Raises SceneError if the scene says where both are.
         """
-        room = (self.size.length + other.size.length) / 2 + STANDS + BEHIND * self.v
-        if not self.is_along and self.v == 0:
-            self.t += math.copysign(self.size.width + 0.5, self.t)
-        elif not self.is_along and self.meeting:
+        room = self.between(other) + STANDS + BEHIND * self.v
+        if self.meeting and self.waits:
+            aside = math.sin(self.path.pose(self.meeting.car)[3] - self.way.pose(self.meeting.own)[3])
+            self.t += math.copysign(self.size.width + 0.5, aside)
+        elif self.meeting and not self.is_along:
             self.meeting = self.meeting._replace(own=self.meeting.own - room)
             self.put(self.s - room)
         elif not self.is_placed:
@@ -361,14 +346,10 @@ class Act:
             refuse("drives away before it is on the road; give another place")
         if self.v == 0 and not self.waits and self.state() is None:
             refuse(
-                f"would stand at {self.along:.0f} m, but the road is {self.road.length:.0f} m long; make the "
-                "road longer, or give another place"
+                f"would stand at {self.along:.0f} m, but the road ends at {self.road.length:.0f} m; change it"
             )
         if self.held and self.along + ROLL * self.v < self.size.length / 2:
-            refuse(
-                "would have to begin its action before the begin of the road; give another gap, or another "
-                "speed"
-            )
+            refuse("would have to act before the begin of the road; give another gap or speed")
         wait = self.wait(first) if first and (self.waits or self.held) else 0.0
         if self.waits and wait < 0:
             refuse("cannot be where it meets the tested car in time; give another place, or more speed")
@@ -427,11 +408,7 @@ class Act:
             away = self.n.get("away", NEAR)
             return found, 0.0 if self.crosses else max(met.own - away, length / 2)
         if "ttc" in self.cue and self.first in ON_ITS_WAY:  # it comes over the line at that time
-            half = float(self.world.profile_of(self.road).width(self.path.to_road(met.car))) / 2
-            turned = self.path.pose(met.car)[3] - self.way.pose(met.own)[3]
-            corner = (half + width / 2 * abs(math.cos(turned))) / max(abs(math.sin(turned)), 0.3)
-            over = met.own - corner - length / 2
-            found = found._replace(own=over + self.v * self.cue["ttc"])
+            found = found._replace(own=self._over_line(met) + self.v * self.cue["ttc"])
         found = found._replace(own=found.own - self.copy * (length + STANDS + BEHIND * self.v))
         eta = (found.car - car.s - car.length / 2) / max(car.v, 1.0)
         return found, found.own - self.way.before(found.own, self.v, eta)
@@ -560,11 +537,12 @@ class Act:
             case _:  # cut_in, wrong_way, pull_out, overtake of who comes towards the tested car
                 return self._across()
 
-    def leave(self, begins: float, other: "Act") -> None:
-        """Makes sure that it has left its lane, from a station on and as fast as it is, before it is beside
-        somebody who stands there: sideways as fast as that needs, or else as the scene says. Raises
-        SceneError if that is too slow."""
-        deed, room = self.deeds[0], other.s - begins - (self.size.length + other.size.length) / 2
+    def leave(self, other: "Act") -> None:
+        """Makes sure that it has left its lane, from a station on, before it is beside somebody who stands
+        there: sideways as fast as that needs, if the scene does not say. Raises SceneError if it is too slow.
+        """
+        deed, begins = self.deeds[0], self.begins
+        room = other.s - begins - self.between(other)
         by = self._leads_to(deed, begins, self.t) - self.t
         aside = (self.size.width + other.size.width) / 2 + APART + math.copysign(1, by) * (other.t - self.t)
         share = math.acos(1.0 - 2.0 * min(max(aside / abs(by), 0.0), 1.0)) / math.pi
@@ -587,6 +565,15 @@ class Act:
     def along(self) -> float:
         """The station along the tested car's lane."""
         return self.s + self.shift
+
+    @property
+    def begins(self) -> float:
+        """The station of its way where it begins to act, as far as it can be seen now."""
+        return self.s + max(self.wait(self.deeds[0]), 0.0) * self.v
+
+    def between(self, other: "Act") -> float:
+        """Returns how far its middle is from that of another where their boxes meet in a lane."""
+        return (self.size.length + other.size.length) / 2
 
     @property
     def is_gone(self) -> bool:
@@ -733,14 +720,22 @@ class Act:
     def _until_over_line(self, deed: Deed, s: float, t: float) -> float:
         """Returns how many seconds after its begin from a place an action leads over the line of the tested
         car's lane."""
-        half = float(self.world.profile_of(self.road).width(self.path.to_road(s))) / 2
-        if deed.what == "cross":
-            assert self.way.meets is not None
-            way = max(self.way.meets[0] - half - self.size.length / 2, 0.0)
+        if deed.what == "cross" and self.meeting:
+            way = max(self._over_line(self.meeting) - self.s, 0.0)
             return time_over(0.0, way, *self._starts(deed.n))
         by = self._leads_to(deed, s, t) - t
-        over = min(max((abs(t) - half - self.size.width / 2) / max(abs(by), 1e-6), 0.0), 1.0)
+        over = min(max((abs(t) - self._half_lane(s) - self.size.width / 2) / max(abs(by), 1e-6), 0.0), 1.0)
         return _slides(deed, by, self._sideways(s)) * math.acos(1.0 - 2.0 * over) / math.pi
+
+    def _half_lane(self, s: float) -> float:
+        return float(self.world.profile_of(self.road).width(self.path.to_road(s))) / 2
+
+    def _over_line(self, met: Meeting) -> float:
+        """Returns from which station of its way on it is over the line of the tested car's lane where they
+        meet."""
+        turned = self.path.pose(met.car)[3] - self.way.pose(met.own)[3]
+        corner = self._half_lane(met.car) + self.size.width / 2 * abs(math.cos(turned))
+        return met.own - corner / max(abs(math.sin(turned)), 0.3) - self.size.length / 2
 
     def gap(self) -> tuple[float, float]:
         """Returns the distance to the tested car from bumper to bumper, and how fast it grows; of those in
@@ -843,9 +838,8 @@ class Act:
         if phase.until == "speed":
             left = abs(self.goal - self.v) / min(self.pull, self._room(self.goal > self.v, self.s))
         elif phase.until == "there":
-            left = (
-                max(self.slide.lasts - self.slid, 0.0) / (self._pace(self.v) or 1e-9) if self.slide else 0.0
-            )
+            slid = self.slide.lasts - self.slid if self.slide else 0.0
+            left = max(slid, 0.0) / (self._pace(self.v) or 1e-9)
         elif phase.until == "passed":
             left = (PASSED - (self.along - self.car.s - self.half)) / max(self.v - self.car.v, 1e-9)
         elif phase.until == "met" and self.meeting:
@@ -868,8 +862,8 @@ class Act:
 
     def _pace(self, v: float) -> float:
         """How fast the time of a movement sideways passes: slower for who is slow, not at all at rest."""
-        assert self.slide is not None
-        return min(1.0, abs(v) / (SHARPEST * self.slide.peak)) if self.slide.by else 1.0
+        peak = self.slide.peak if self.slide else 0.0
+        return min(1.0, abs(v) / (SHARPEST * peak)) if peak else 1.0
 
     def _room(self, is_faster: bool, s: float) -> float:
         """The most in m/s^2 with which friction and grade let it become faster or slower at a place, beside
@@ -896,8 +890,8 @@ class Act:
             if abs(falls) > STEEP:
                 where += f" on a grade of {100 * abs(math.tan(math.asin(falls / GRAVITY))):.0f} %"
             given = not {"decel", "accel", "lateral"}.isdisjoint(deed.n) and bool(most < GRIP)
-            number = self.deeds.index(deed)
-            self.limited.setdefault(number, Limit(asked, most, f"{where}: friction is {mu:g}", given))
+            said = f" with at most {most:.1f} m/s2, not {asked:.1f}{where}: friction is {mu:g}"
+            self.limited.setdefault(self.deeds.index(deed), (said, given))
 
     def _drive(self, time: float) -> None:
         """Moves it by some seconds, within which nothing else begins."""
@@ -915,11 +909,12 @@ class Act:
             self.v = self.goal
         stretch, fastest = self.way.bend(self.s, self.t, self.forward)
         self.v = min(self.v, fastest)
-        if self.ahead is not None and self.v > 0:
+        if self.ahead is not None:
             (gap, speed), most = self.ahead, self._room(False, self.s)
-            safe = math.sqrt(speed**2 + 2 * min(EASY, most) * max(gap - self.v * STEP - JAM / 2, 0.0))
-            if (safe := max(safe, before - min(FIRM, most) * time, 0.0)) < self.v:
-                self.v, speeds_up = safe, time
+            safe = speed * abs(speed) + 2 * min(EASY, most) * max(gap - abs(self.v) * STEP - JAM / 2, 0.0)
+            safe = max(math.sqrt(max(safe, 0.0)), abs(before) - min(FIRM, most) * time)
+            if safe < abs(self.v):
+                self.v, speeds_up = math.copysign(safe, self.v), time
         gone = (before + self.v) / 2 * speeds_up + self.v * (time - speeds_up)
         self.s += self.forward * gone / stretch
         if self.slide is None:

@@ -14,7 +14,7 @@ import numpy as np
 from roadgpt.brief.scene import Role
 from roadgpt.geometry import wrap_angle
 from roadgpt.network import network_of
-from roadgpt.network.network import Junction, Network, RoadEnd
+from roadgpt.network.network import Arm, Junction, Network, RoadEnd
 from roadgpt.traffic.following import GREEN, RED, YELLOW
 
 if TYPE_CHECKING:
@@ -34,20 +34,17 @@ class Lights:
         """For each arm with lights its phase, the number of phases, and the moment at which the cycle
         begins."""
         for junction in network.junctions:
-            arms = [arm for arm in junction.arms if arm.control == "lights"]
-            groups: list[list[RoadEnd]] = []
-            directions: list[float] = []
-            for arm in arms:
-                for group, direction in zip(groups, directions, strict=True):
-                    if len(group) == 1 and abs(wrap_angle(arm.direction - direction)) > OPPOSITE:
-                        group.append(arm.end)
-                        break
-                else:
-                    groups.append([arm.end])
-                    directions.append(arm.direction)
+            groups: list[list[Arm]] = []
+            for arm in junction.arms:
+                turned = [abs(wrap_angle(arm.direction - first.direction)) for first, *_ in groups]
+                is_free = [by > OPPOSITE and not pair[1:] for by, pair in zip(turned, groups, strict=True)]
+                if arm.control == "lights" and any(is_free):
+                    groups[is_free.index(True)].append(arm)
+                elif arm.control == "lights":
+                    groups.append([arm])
             begin = float(rng.uniform(0.0, PHASE * max(len(groups), 1)))
             for n, group in enumerate(groups):
-                self.phases |= dict.fromkeys(group, (n, len(groups), begin))
+                self.phases |= {arm.end: (n, len(groups), begin) for arm in group}
 
     def shown(self, end: RoadEnd, time: float) -> int:
         """Returns GREEN, YELLOW or RED for the traffic that comes from the end of a road at a time in

@@ -127,25 +127,20 @@ class Traffic:
     def happened(self) -> dict[str, float]:
         """What of the scene has begun, in words, and the station in metres along its road where the tested
         car was then."""
-        each = (getattr(mover, "happened", {}) for mover, _ in self._movers)
-        return {did: s for found in each for did, s in found.items()}
+        return {did: s for mover, _ in self._movers for did, s in getattr(mover, "happened", {}).items()}
 
     @property
     def limited(self) -> dict[str, bool]:
         """What the others did with less than their scene or their habits ask for, in sentences, each with
         whether the road does not give what the scene prescribes."""
         return {
-            said: is_it
-            for mover, _ in self._movers
-            for said, is_it in getattr(mover, "limited", dict[str, bool])().items()
+            said: is_it for mover, _ in self._movers for said, is_it in getattr(mover, "limited", {}).items()
         }
 
     @property
     def missed(self) -> tuple[str, ...]:
         """What of the scene has not happened so far, in sentences."""
-        return tuple(
-            each for mover, _ in self._movers for each in getattr(mover, "missed", tuple[str, ...])()
-        )
+        return tuple(each for mover, _ in self._movers for each in getattr(mover, "missed", ()))
 
     def tracks(self) -> Tracks:
         """Returns how everybody moved who was there at some time."""

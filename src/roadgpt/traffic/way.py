@@ -89,13 +89,8 @@ class Way:
         return rows
 
     @cached_property
-    def _fastest(self) -> FloatArray:
-        return np.sqrt([row[5] for row in self._rows])
-
-    @cached_property
     def _places(self) -> list[float]:
-        places: list[float] = self.stations.tolist()
-        return places
+        return [*map(float, self.stations)]
 
     def _at(self, s: float) -> list[float]:
         places = self._places
@@ -115,13 +110,33 @@ class Way:
         cos, sin = math.cos(heading), math.sin(heading)
         return x + beyond * cos - t * sin, y + beyond * sin + t * cos, z, heading
 
+    def locate(self, x: FloatArray, y: FloatArray) -> tuple[FloatArray, ...]:
+        """Returns the stations of places, how far they are to the left, and the heading there, as seen from
+        the nearest points of the way."""
+        away = np.hypot(self.points[:, :1] - x, self.points[:, 1:2] - y)
+        nearest = away.argmin(axis=0)
+        heading = self.points[nearest, 3]
+        dx, dy = x - self.points[nearest, 0], y - self.points[nearest, 1]
+        c, s = np.cos(heading), np.sin(heading)
+        return self.stations[nearest] + dx * c + dy * s, dy * c - dx * s, heading
+
+    def boxes(self, rows: FloatArray) -> tuple[FloatArray, ...]:
+        """Returns how boxes lie to the way, from their states, lengths and widths ``(n, 7)``: station, place
+        to its left, half of what they take along and across it, and speed along it and to the left."""
+        x, y, _, heading, speed, length, width = rows.T
+        s, left, ahead = self.locate(x, y)
+        cos, sin = np.cos(heading - ahead), np.sin(heading - ahead)
+        half, wide = length * abs(cos) + width * abs(sin), width * abs(cos) + length * abs(sin)
+        return s, left, half / 2, wide / 2, speed * cos, speed * sin
+
     def before(self, end: float, speed: float, seconds: float) -> float:
         """Returns how many metres before a station somebody is so many seconds earlier who drives along the
         way with this speed, or as fast as its bends allow."""
-        if self._fastest[self.stations <= end].min(initial=math.inf) >= speed or seconds <= 0 or speed <= 0:
+        fastest = np.sqrt([row[5] for row in self._rows])
+        if fastest[self.stations <= end].min(initial=math.inf) >= speed or seconds <= 0 or speed <= 0:
             return speed * seconds
         s = np.linspace(0.0, end, int(max(end, SPACING) / SPACING) + 2)
-        square = np.minimum(np.interp(s, self.stations, self._fastest), speed) ** 2
+        square = np.minimum(np.interp(s, self.stations, fastest), speed) ** 2
         gains = 2 * min(GAINS, SLOWING * min(row[7] for row in self._rows))
         pace = np.sqrt(np.minimum.accumulate(square - gains * s) + gains * s)
         times = np.concatenate([[0.0], np.cumsum((2 * np.diff(s) / (pace[1:] + pace[:-1]))[::-1])])

@@ -275,17 +275,13 @@ def _from_ramp(around: _Around) -> Iterator[Way | None]:
 
 def _into(around: _Around, way: Way, begin: float, end: float) -> Way | None:
     """Returns the way that changes to the tested car's path in the middle between two of its stations."""
-    import shapely
-
     path, length = around.path, min(LONGEST, SHARE * (end - begin))
     kept = way.stations < (begin + end - length) / 2
     if kept.sum() < 2:
         return None
-    x, y = way.points[kept][-1, :2]
-    at = float(shapely.LineString(path.points[:, :2]).project(shapely.Point(x, y)))
-    ahead, here = path.stations > at, path.pose(at)
+    (at,), (aside,), _ = path.locate(*way.points[kept][-1, :2])
+    ahead = path.stations > at
     cos, sin = np.cos(path.points[ahead, 3]), np.sin(path.points[ahead, 3])
-    aside = (y - here[1]) * math.cos(here[3]) - (x - here[0]) * math.sin(here[3])
     left = aside * (1 + np.cos(np.pi * np.minimum((path.stations[ahead] - at) / length, 1.0))) / 2
     rest = path.points[ahead, :3] + np.column_stack([-left * sin, left * cos, 0 * left])
     whole = Way.through(np.vstack([way.points[kept, :3], rest]))

@@ -9,7 +9,7 @@ import numpy as np
 from roadgpt.brief.scene import DOINGS, HEAD_ON, LEAVES, MOST_MORE
 from roadgpt.road.road import START
 from roadgpt.traffic.acting import BEHIND, ONCOMING, STANDS, Act, Car
-from roadgpt.traffic.actor import HEADING, SIZES, SPEED, STILL, Actor, FloatArray, TestedCar, corners
+from roadgpt.traffic.actor import HEADING, SIZES, STILL, Actor, FloatArray, TestedCar, corners
 from roadgpt.traffic.boxes import touch
 from roadgpt.traffic.following import ALONG
 from roadgpt.traffic.places import parked_rows
@@ -38,6 +38,7 @@ class Script:
             Actor(f"{kind} {kinds[: n + 1].count(kind)}", kind, SIZES[kind]) for n, kind in enumerate(kinds)
         ]
         self._parked = np.array([state for _, state in rows]).reshape(-1, 5)
+        self._sizes = np.array([actor.size[:2] for actor in self.actors]).reshape(-1, 2)
         self.happened: dict[str, float] = {}
         """What of the scene has begun, in words, and at which station of its road the tested car was then."""
 
@@ -65,24 +66,20 @@ class Script:
         last: Act | None = None
         for act in ahead:
             if act.v == 0 and "station" not in act.n and "lead" not in act.n:
-                if leavers and leavers[0] is not act and act.copy == 0:
-                    leaver = leavers[0]
-                    gap = act.n.get("gap", UNCOVERED * leaver.v)
-                    begins = leaver.s + max(leaver.wait(leaver.deeds[0]), 0.0) * leaver.v
-                    act.put(max(act.s, begins + gap + (act.size.length + leaver.size.length) / 2))
-                elif last is not None and (act.copy or not act.is_placed):
-                    act.put(max(act.s, last.s + (last.size.length + act.size.length) / 2 + STANDS))
+                if leavers and act.copy == 0:
+                    gap = act.n.get("gap", UNCOVERED * leavers[0].v)
+                    act.put(max(act.s, leavers[0].begins + gap + act.between(leavers[0])))
+                elif last and (act.copy or not act.is_placed):
+                    act.put(max(act.s, last.s + act.between(last) + STANDS))
                 last = act
         for leaver in leavers:
-            begins = leaver.s + max(leaver.wait(leaver.deeds[0]), 0.0) * leaver.v
             for act in ahead:
                 wide = (act.size.width + leaver.size.width) / 2
-                if act.v == 0 and begins < act.s and abs(act.t - leaver.t) < wide:
-                    leaver.leave(begins, act)
-        for act in ahead if last is not None else ():
-            assert last is not None
-            if act.v > 0 and act.first not in LEAVES and not act.is_placed and act.s < last.s:
-                act.put(last.s + (last.size.length + act.size.length) / 2 + BEHIND * act.v)
+                if act.v == 0 and leaver.begins < act.s and abs(act.t - leaver.t) < wide:
+                    leaver.leave(act)
+        for act in ahead:
+            if last and act.v > 0 and act.first not in LEAVES and not act.is_placed and act.s < last.s:
+                act.put(last.s + act.between(last) + BEHIND * act.v)
         onto = [act for act in acts if act.forward < 0 and act.is_along and not act.is_placed]
         late = [act.s + act.size.length / 2 - self._way.length for act in onto if act.first in HEAD_ON]
         spare = min((act.s - act.car.s - act.half - ONCOMING for act in onto), default=0.0)
@@ -124,62 +121,48 @@ class Script:
         return self._states()
 
     def _look(self, bodies: FloatArray, car: TestedCar) -> None:
-        """Tells everybody along the tested car's lane how far it is to who is ahead of it there, and how fast
-        that moves."""
-        for act in self._acts:
-            act.ahead = None
-        drivers = [act for act in self._acts if act.way is self._way and act.v > 0]
-        states = [(*state, *act.size[:2]) for act in self._acts if (state := act.state()) is not None]
+        """Tells everybody how far it is to who is ahead on its way, and how fast that moves along it. Who
+        comes onto its way before it is there is seen by those who stand later in the scene."""
         own = (car.x, car.y, 0.0, car.heading, car.speed, car.length, car.width)
-        rows = np.vstack([np.array(states).reshape(-1, 7), bodies, own])
-        if not drivers:
-            return
-        points, stations = self._way.points, self._way.stations
-        away = (points[:, None, 0] - rows[None, :, 0]) ** 2 + (points[:, None, 1] - rows[None, :, 1]) ** 2
-        nearest = away.argmin(axis=0)
-        heading = points[nearest, 3]
-        dx, dy = rows[:, 0] - points[nearest, 0], rows[:, 1] - points[nearest, 1]
-        along = stations[nearest] + dx * np.cos(heading) + dy * np.sin(heading)
-        left = dy * np.cos(heading) - dx * np.sin(heading)
-        is_on = away.min(axis=0) < (IN_SIGHT / 2) ** 2
-        turned = rows[:, HEADING] - heading
-        cos, sin = np.abs(np.cos(turned)), np.abs(np.sin(turned))
-        half = (rows[:, 5] * cos + rows[:, 6] * sin) / 2
-        wide = (rows[:, 6] * cos + rows[:, 5] * sin) / 2
-        speed = rows[:, SPEED] * np.cos(turned)
-        for act in drivers:
-            apart = act.forward * (along - act.s)
+        rows = np.vstack([np.hstack([self._states(), self._sizes]), bodies, own])
+        seen = {act.way: act.way.boxes(rows) for act in self._acts if act.v != 0}
+        for number, act in enumerate(self._acts):
+            act.ahead = None
+            if act.v == 0:
+                continue
+            along, left, half, wide, speed, aside = seen[act.way]
+            ahead = math.copysign(act.forward, act.forward * act.v)
+            apart = ahead * (along - act.s)
             gap = apart - half - act.size.length / 2
+            later = left + aside * np.maximum(gap, 0.0) / abs(act.v)
+            later[number:] = left[number:]
             sides = [act.t] if act.slide is None else [act.t, act.slide.begin + act.slide.by]
-            near = np.min([np.abs(left - each) for each in sides], axis=0)
+            near = np.min([np.abs(each - side) for each in (left, later) for side in sides], axis=0)
             if act.uncovers and (not act.begun or act.slide):
                 to = np.abs(left - sides[-1]) if act.slide else np.inf
                 near = np.where(np.abs(speed) < STILL, to, near)
-            is_ahead = (
-                is_on & (apart > SPACING) & (gap < IN_SIGHT) & (near < wide + act.size.width / 2 + BESIDE)
-            )
+            is_ahead = (apart > SPACING) & (gap < IN_SIGHT) & (near < wide + act.size.width / 2 + BESIDE)
             is_ahead[-1] &= act.minds
             if is_ahead.any():
                 first = int(np.where(is_ahead, gap, np.inf).argmin())
-                act.ahead = float(gap[first]), max(act.forward * float(speed[first]), 0.0)
+                act.ahead = float(gap[first]), float(ahead * speed[first])
 
     def _states(self) -> FloatArray:
         nowhere = (np.nan,) * 5
         return np.vstack([*(act.state() or nowhere for act in self._acts), self._parked])
 
+    @property
     def limited(self) -> dict[str, bool]:
-        """Returns what was done with less than its action asks for, in sentences, each with whether the road
-        does not give what the scene prescribes."""
+        """See ``Traffic.limited``."""
         return {
-            f"{_did(actor, act, n)} with at most {each.most:.1f} m/s2, not {each.asked:.1f}{each.where}": (
-                each.is_prescribed
-            )
+            _did(actor, act, n) + said: is_prescribed
             for actor, act in zip(self.actors, self._acts, strict=False)
-            for n, each in sorted(act.limited.items())
+            for n, (said, is_prescribed) in sorted(act.limited.items())
         }
 
+    @property
     def missed(self) -> tuple[str, ...]:
-        """Returns what of the scene has not begun so far, a sentence for each actor."""
+        """What of the scene has not begun so far, a sentence for each actor."""
         found = []
         for actor, act in zip(self.actors, self._acts, strict=False):
             number = next((n for n in range(len(act.deeds)) if n not in act.shown), None)
