@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -152,6 +153,13 @@ def test_a_speed_limit_that_the_file_lacks_is_not_written_as_its_own(
         invoke("export", file, "--to", "opendrive", "--speed-limit", "30", "--out", str(out))
         lanes = (out / f"{name}.xodr").read_text().count('type="driving"')
         assert (out / f"{name}.xodr").read_text().count("<speed sOffset") == lanes
+    camp = tmp_path / "camp"
+    for more, count in (((), kept), (("--speed-limit", "30"), lanes)):
+        shutil.rmtree(camp, ignore_errors=True)
+        on = ("campaign", "--on", files[-1], "--no-drive", "--out", str(camp), *more)
+        assert invoke(*on).exit_code == 0
+        assert invoke("export", f"{camp}/c01/1", "--to", "opendrive", "--out", str(camp)).exit_code == 0
+        assert next(camp.glob("*.xodr")).read_text().count("<speed sOffset") == count
     whole = town.read_text().count("<speed sOffset")
     invoke("export", str(town), "--to", "opendrive", "--out", str(out))
     assert (out / "town.xodr").read_text().count("<speed sOffset") == whole > 0

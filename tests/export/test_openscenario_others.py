@@ -74,6 +74,12 @@ def test_everybody_is_where_the_drive_recorded_them(written: tuple[Path, Tracks]
             np.testing.assert_allclose([-np.tan(pose[4]) for _, pose in moments[3:-3]], grade, atol=0.03)
 
 
+def first_speed(root: ET.Element, name: str) -> float:
+    """The speed in m/s that an entity has at first."""
+    (found,) = root.iterfind(f"Storyboard/Init/Actions/Private[@entityRef='{name}']//AbsoluteTargetSpeed")
+    return float(found.attrib["value"])
+
+
 def test_who_is_placed_stands_where_a_drive_of_the_same_seed_begins(tmp_path: Path) -> None:
     """Nobody has driven: the others are where the drive has them at first, with their speed of that time."""
     words = "straight 160 && truck ahead gap=30 v=50: brake decel=6; car parked"
@@ -96,8 +102,18 @@ def test_who_is_placed_stands_where_a_drive_of_the_same_seed_begins(tmp_path: Pa
         ahead = float(root.find(f"Entities/ScenarioObject[@name='{actor.name}']//Center").attrib["x"])
         way = [np.cos(state[3]), np.sin(state[3])]
         np.testing.assert_allclose(pose[:2] + ahead * np.array(way), state[:2], atol=2e-3)
-        init = root.find(f"Storyboard/Init/Actions/Private[@entityRef='{actor.name}']")
-        assert float(init.find(".//AbsoluteTargetSpeed").attrib["value"]) == pytest.approx(state[4])
+        assert first_speed(root, actor.name) == pytest.approx(state[4])
+    # nor does the tested car start from rest
+    speed = driven.drive["speed"]
+    assert first_speed(root, "Ego") == pytest.approx(speed[0], abs=0.01)
+    assert speed[0] > 10.0
+    export(driven, tmp_path, ["openscenario"], said.append)
+    root = ET.parse(tmp_path / "road.xosc").getroot()
+    assert first_speed(root, "Ego") == pytest.approx(speed[0], abs=0.01)
+    entries = [*root.iter("SpeedProfileEntry")]
+    waits, speeds = (np.array([float(each.attrib[name]) for each in entries]) for name in ("time", "speed"))
+    time = driven.drive["time"] - driven.drive["time"][0]
+    assert np.interp(time, np.cumsum(waits), speeds) == pytest.approx(np.abs(speed), abs=0.15)  # simplified
 
 
 def test_who_comes_late_and_who_leaves_is_added_and_deleted(written: tuple[Path, Tracks]) -> None:

@@ -3,7 +3,7 @@
 import os
 import re
 import webbrowser
-from collections.abc import Callable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Iterator, Sequence, Set
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from itertools import count
@@ -197,6 +197,7 @@ def source_of(
     blueprint, remarks, world_of_file, *_ = _source_in(file)
     context, stated = click.get_current_context(silent=True), dict(world_of_file)
     told = (typed(context) if context else set()) if told is None else told
+    told = told | {"limit_stated"} if "speed_limit" in told else told
     scene = stated.pop("scene", "")
     if scene and not {"scene", "scenario"} & told and context and "scene" in context.params:
         remarks += (f"the scene of the run is left out; give it with --scene '{scene}'",)
@@ -212,8 +213,6 @@ def source_of(
         remarks += (f"the surface of --scene goes before the friction {stated['friction']:g} of the file",)
         told = told | {"friction"}
     world = world.changed(**{name: value for name, value in stated.items() if name not in told})
-    if "speed_limit" not in told and _lacks_limit(blueprint, stated, file):
-        world = world.changed(limit_stated=False)
     if Path(file).suffix.lower() in WITHOUT_MAP and isinstance(blueprint, Road) and "map_size" not in told:
         _, size, _, more = on_a_map(blueprint, world, keep_place=True)
         world, remarks = world.changed(map_size=size), remarks + more
@@ -221,20 +220,6 @@ def source_of(
         verb = "has" if len(own) == 1 else "have"
         remarks += (f"the road has lanes of its own; {', '.join(own)} {verb} no effect on it",)
     return blueprint, world, remarks
-
-
-def _lacks_limit(blueprint: "Design | Road", stated: Mapping[str, object], file: str) -> bool:
-    """Returns whether a road of a map, or some of its lanes, have no speed limit; ours have all fields."""
-    from roadgpt.network import is_route
-    from roadgpt.road import Road
-
-    is_of_others = bool(stated) or Path(file).suffix.lower() == ".xodr"
-    if not (isinstance(blueprint, Road) and is_of_others):
-        return False
-    if "speed_limit" not in stated or "lane_width" in stated or not is_route(blueprint):
-        return "speed_limit" not in stated
-    lanes = (lane for each in blueprint.network.roads for lane in each.profile.lanes.values())
-    return any(lane.kind == "driving" and lane.speed_limit is None for lane in lanes)
 
 
 def _source_in(file: str) -> "RoadSource":

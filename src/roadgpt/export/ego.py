@@ -129,7 +129,7 @@ def goal_of(road: Road) -> float:
 
 
 class SpeedProfile(NamedTuple):
-    """The speeds of a calm driver from a standing start, as arrays of equal length."""
+    """Planned or driven speeds, as arrays of equal length."""
 
     speed: Array  # speeds in m/s
     time: Array  # times in seconds since the start; the acceleration is constant between stations
@@ -149,21 +149,22 @@ def calm_speed(road: Road, world: World) -> float:
     return float(calm_speeds(road, world, road.sample().s).min())
 
 
-def calm_profile(road: Road, world: World) -> SpeedProfile:
-    """Returns the speeds of a calm driver who starts from rest and drives in the middle of the right lane."""
+def calm_profile(road: Road, world: World, first: float = 0.0) -> SpeedProfile:
+    """Returns the speeds of a calm driver in the middle of the right lane, who begins with ``first`` m/s, or
+    as fast as the road allows."""
     start = start_of(road)
     count = max(2, int(np.ceil((road.length - start) / STEP)) + 1)
     s = np.linspace(start, road.length, count)
     step, bend = float(s[1] - s[0]), road.curvature(s)
     grip = GRIP * world.site.friction
     pull = min(PULL / GRAVITY, grip)
-    limits = DrivingLimits(min(COMFORT / GRAVITY, grip), pull, pull, world.limits.speed_limit)
+    top = world.limits.speed_limit
+    limits = DrivingLimits(min(COMFORT / GRAVITY, grip), pull, pull, top, first=first)
     offset = world.profile_of(road).middle(s)
     speed = lane_speed(bend, 0.0, step, offset, limits)
     stretch = np.maximum(1 - bend * offset, 0.0)
     along = step * (stretch[1:] + stretch[:-1]) / 2
-    # the first station of the plan is one step after rest
-    speed = np.minimum(speed, np.sqrt(2 * pull * GRAVITY * np.r_[0.0, np.cumsum(along)]))
+    speed = np.minimum(speed, np.sqrt(first**2 + 2 * pull * GRAVITY * np.r_[0.0, np.cumsum(along)]))
     return SpeedProfile(speed, np.r_[0.0, np.cumsum(2 * along / (speed[1:] + speed[:-1]))])
 
 

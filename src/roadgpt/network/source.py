@@ -28,7 +28,7 @@ SHAPES = (
     "a road, a design or a test written by roadgpt, an SBFT or SDC-Scissor test with road_points, "
     "a list of [x, y] or [x, y, z], a table of points (.csv), or an OpenDRIVE file (.xodr)"
 )
-OF_FILE = ("map_size", "lane_width", "shoulder", "speed_limit", "friction")
+OF_FILE = ("map_size", "lane_width", "shoulder", "speed_limit", "limit_stated", "friction")
 """The fields of a World that a road file may state for its road, as ``world``."""
 OF_RUN = ("road.json", "design.json")  # files of a run, which has its World in run.json
 NAMES = ("_id", "id", "name", "test_id")  # keys of a test that may hold its name

@@ -53,6 +53,7 @@ class DrivingLimits:
     speed: float  # speed limit in m/s
     power: float = 100.0
     """Engine power per mass of the car in W/kg, which limits the acceleration at higher speeds."""
+    first: float = 0.0  # speed in m/s with which the car comes to the start of its path
 
 
 def expected_speed(
@@ -85,7 +86,7 @@ def lane_speed(
     limits: DrivingLimits,
     superelevation: ArrayLike = 0.0,
 ) -> Array:
-    """Returns the speeds in m/s of a car that starts from rest and drives in the middle of its lane.
+    """Returns the speeds in m/s of a car that drives in the middle of its lane.
 
     The car slows down for bends but not for crests, so that the check for abrupt crests is made at full
     speed. The arguments have values at stations ``step`` metres apart. ``curvature`` ``(n,)`` in 1/m and
@@ -93,9 +94,8 @@ def lane_speed(
     surface falls to the right. ``offset`` is that of the middle of the lane, in metres to the left. All but
     the curvature may be one value for all stations."""
     bend = np.asarray(curvature, float)
-    angle = np.broadcast_to(np.asarray(superelevation, float), bend.shape)
+    angle, grades = (np.broadcast_to(np.asarray(each, float), bend.shape) for each in (superelevation, grade))
     along = np.maximum(1 - bend * offset * np.cos(angle), LEAST_STRETCH)
-    grades = np.broadcast_to(np.asarray(grade, float), bend.shape)
     level = [0.0] * len(bend)
     lane = PathGeometry(step, along.tolist(), (bend / along).tolist(), grades.tolist(), level, angle.tolist())
     return np.array(plan_speed(lane, limits))
@@ -111,8 +111,8 @@ def plan_speed(
     top = list(map(_corner_speed, slopes, line.curvature, line.crest, repeat(limits)))
     if highest is not None:
         top = [min(speed, most) for speed, most in zip(top, highest, strict=True)]
-    _sweep(line, slopes, top, limits.lateral, limits.braking, math.inf, forward=False)
-    _sweep(line, slopes, top, limits.lateral, limits.traction, limits.power, forward=True)
+    _sweep(line, slopes, top, top[-1], limits.lateral, limits.braking, math.inf, forward=False)
+    _sweep(line, slopes, top, limits.first, limits.lateral, limits.traction, limits.power, forward=True)
     return top
 
 
@@ -149,6 +149,7 @@ def _sweep(
     line: PathGeometry,
     slopes: Sequence[_Inclination],
     top: list[float],
+    before: float,
     lateral: float,
     along: float,
     power: float,
@@ -156,10 +157,9 @@ def _sweep(
     forward: bool,
 ) -> None:
     """Lowers speeds that the car cannot reach by accelerating (forward), or from which it cannot brake to the
-    speed at the following station (backward)."""
+    speed at the following station (backward). ``before`` is the speed in m/s where the sweep begins."""
     way = 1 if forward else -1
     order = range(len(top)) if forward else range(len(top) - 1, -1, -1)
-    before = top[order[0]] if not forward else 0.0
     for i in order:
         v2 = before * before
         (level, cube, cos, sin), bend = slopes[i], v2 * abs(line.curvature[i])

@@ -79,13 +79,13 @@ class OpenScenario:
 def scenario(
     road: Road, world: World, map_: str, poses: Poses | None = None, placed: Others | None = None
 ) -> XmlElement:
-    """Returns a scenario in which the car starts from rest, slows down for bends, and drives to the end of
-    the road or of the route. ``map_`` is the path of the OpenDRIVE file, relative to the scenario. The others
-    and the lights do what they did in a drive, if there was one, else ``placed`` says where others begin.
+    """Returns a scenario in which the car slows down for bends, and drives to the end of the road or of the
+    route. ``map_`` is the path of the OpenDRIVE file, relative to the scenario. The others and the lights do
+    what they did in a drive, if there was one, else ``placed`` says where others begin. The car begins as
+    fast as in the drive, or as it would among these others, and among others drives as fast as it did.
 
     The waypoints of a route are its start, the middle of each lane between the first and the last, and its
     end. The scenario also ends if the car drives for too long."""
-    plan = calm_profile(road, world)
     # stations are those of the rear axle
     start, near = max(start_of(road) + CAR.rear_axle, 0.0), road.length - (goal_of(road) + CAR.rear_axle)
     middles = [mean(both) for both in pairwise(road.starts)]
@@ -104,10 +104,15 @@ def scenario(
     others = [] if placed is None else [*_moved(placed, end if poses is not None else 0.0)]
     if others:
         told = f"{told[:-1]}, among {len(others)} others."
+    if poses is not None and others:
+        plan = SpeedProfile(np.maximum(poses.speed, 0.0), poses.time - poses.time[0])
+    else:
+        rolls = world.first_speed if others or world.scene.speed is not None else 0.0
+        plan = calm_profile(road, world, rolls if poses is None else float(poses.speed[0]))
     root, actions, story = _frame(road, world, map_, told, others)
     if poses is not None and poses.lights:
         _lights(root, Signals(network_of(road, world)).lights, poses)
-    _start(actions, waypoints[0], 0.0)
+    _start(actions, waypoints[0], round(float(plan.speed[0]), DECIMALS))
     assigned = actions.add("PrivateAction").add("RoutingAction").add("AssignRouteAction")
     points = assigned.add("Route", {"name": "to the end", "closed": "false"})
     for waypoint in waypoints:

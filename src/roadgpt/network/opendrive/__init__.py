@@ -35,12 +35,16 @@ class ImportedMap:
     def world_values(self, legs: Sequence[Leg] = ()) -> tuple[dict[str, float], tuple[str, ...]]:
         """Returns the speed limit in m/s and the friction that hold for the longest part of a route, or of
         all lanes, as the fields of a World; and a sentence about each that differs on another part, or is
-        limited. What the file does not state is left out."""
+        limited. What the file does not state is left out; where some lane has no speed limit,
+        ``limit_stated`` is False."""
         roads = {each.id: each for each in self.network.roads}
         ids = {number: each.profile.along_ids + each.profile.against_ids for number, each in roads.items()}
         legs = legs or [Leg(number, lane) for number, own in ids.items() for lane in own]
         lanes = ((roads[leg.road], leg.lane) for leg in legs)
-        return world_values([(each.road.length, each.profile.lanes[lane]) for each, lane in lanes])
+        found, told = world_values([(each.road.length, each.profile.lanes[lane]) for each, lane in lanes])
+        every = (roads[number].profile.lanes[lane] for number, own in ids.items() for lane in own)
+        found |= {} if all(lane.speed_limit for lane in every) else {"limit_stated": False}
+        return found, told
 
 
 def read_map(path: Path | str) -> ImportedMap:

@@ -55,6 +55,7 @@ class ImportedRoad:
         """The fields of a World that the file states, by name: no lane width and shoulder if ``road.profile``
         is not None, which defines them."""
         told = {"speed_limit": self.speed_limit, "friction": self.friction}
+        told |= {"limit_stated": False if self.speed_limit is None else None}
         if self.road.profile is None:
             told |= {"lane_width": self.lane_width, "shoulder": self.shoulder}
         return {name: value for name, value in told.items() if value is not None}
