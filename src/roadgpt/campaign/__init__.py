@@ -9,8 +9,7 @@ A cell is one combination of a description, a designer, a driver, a simulator, a
 Campaigns have two kinds of plug-ins: ``generators/`` propose tests, and ``executors/`` provide the workers
 that run them. ``begin`` makes a campaign's folder. ``work`` runs the remaining tests; after an interruption
 it resumes the campaign. ``status_of`` returns the progress. For one test, ``kept_run`` returns the stored
-Run, with its drive, and ``run_again`` drives the road again.
-"""
+Run, with its drive, and ``run_again`` drives the road again."""
 
 import sys
 from importlib import import_module

@@ -25,8 +25,7 @@ and, of a drive with others on the road, what its verdict says:
     TTC           least time to collision, s
 
 If a description states the number of turns, each turn has features of its own, in driving order: RADIUS_1,
-DEGREES_1, RADIUS_2, ...
-"""
+DEGREES_1, RADIUS_2, ..."""
 
 from collections.abc import Mapping, Sequence
 

@@ -1,8 +1,7 @@
 """Pairs of similar roads at the boundary of failure: the car passed on one of them and failed on the other.
 
 Two roads correspond if they have the same sequence of left turns, right turns and straights. A road half-way
-between two corresponding roads can be made by averaging each length, angle, radius and slope.
-"""
+between two corresponding roads can be made by averaging each length, angle, radius and slope."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -44,8 +43,7 @@ class BoundaryPair:
     distance: float
     """Distance between the two roads: the square root of the sum of squared differences over all turns and
     straights, where 10 m of a straight, 2 m of a radius or a clothoid, 10 degrees of a turn and 1 % of a
-    slope count as 1.
-    """
+    slope count as 1."""
 
 
 def _differences(one: Elements, other: Elements) -> Iterator[tuple[float, int, Measure]]:

@@ -3,8 +3,7 @@
 results.csv    one row per test: its proposal, its outcome, and its features
 cells.csv      one row per cell: its settings, the number of tests with each outcome, the number of bins of
                the feature map that contain failures, and the largest share and distance of the car
-               outside its lane in passed tests
-"""
+               outside its lane in passed tests"""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,6 +1,5 @@
 """Opens the tests of a folder, whatever wrote them; returns the drive or the Run of one of them, either as
-stored or by driving its road again.
-"""
+stored or by driving its road again."""
 
 import json
 import sqlite3
@@ -138,8 +137,7 @@ def kept_run(folder: Path, cell: str, number: int, has_drive: bool = True) -> Ru
 
     The road is built from the stored design. The drive, unless it is left out, is the stored one, with
     positions exact to half a millimetre; outcome, margin and the place of a failure are those recorded.
-    ``cell`` is empty in a folder of runs or of one run, whose Runs always have their drives.
-    """
+    ``cell`` is empty in a folder of runs or of one run, whose Runs always have their drives."""
     with open_record(folder) as record:
         return record.run(cell, number, has_drive)
 

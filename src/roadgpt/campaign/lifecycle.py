@@ -1,8 +1,7 @@
 """Begins and runs campaigns: one process schedules tests and writes the store, and workers run the tests.
 
 begin     makes a folder with a store; the store holds the plan, its cells and their Briefs
-work      runs the remaining tests; interruptions do not change the resulting tables
-"""
+work      runs the remaining tests; interruptions do not change the resulting tables"""
 
 import shutil
 from collections import Counter
@@ -47,8 +46,7 @@ USER_NAMES = {
 def begin(plan: Plan, folder: Path, again: bool = False, roads: Sequence[bytes] = ()) -> bool:
     """Makes a campaign's folder, and reads its descriptions into Briefs, or keeps the files of the ``roads``
     that the plan is given; returns True if the folder already held the same campaign. With ``again``, the
-    results in the folder are set aside first.
-    """
+    results in the folder are set aside first."""
     plan.check()
     _admit(plan)
     _refuse_ignored(plan, plan.world)
@@ -144,8 +142,7 @@ def work(
 
     ``chat`` replaces the stored settings of the language model, whose limits may differ. The roads of a
     folder of runs are made one after another, and ``draw`` draws them. With ``again``, the results are set
-    aside first.
-    """
+    aside first."""
     kind: Callable[[WorkerConfig], Executor] = plugins.find("executors", executor)
     if not is_store(folder):
         yield from _make_runs(folder, chat, draw, again)

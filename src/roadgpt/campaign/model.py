@@ -45,8 +45,7 @@ class CellBudget(Frozen):
     seconds: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
     """Wall-clock seconds, summed over all sessions, after which no further batch is started.
 
-    None: no limit.
-    """
+    None: no limit."""
 
     @property
     def most(self) -> int:
@@ -76,8 +75,7 @@ class Proposal:
     design: Design | GivenRoad | None
     """The road's design, or a road that was given. None: a worker drafts the road from the cell's Brief, with
     ``seed`` and the number of the test. The drafted road differs from at least the latest 1500 designs (from
-    all designs if ``Cell.in_sequence``) in the batches whose results the generator has received.
-    """
+    all designs if ``Cell.in_sequence``) in the batches whose results the generator has received."""
     seed: int
     """Seed of the driver. If ``design`` is None, one seed for both draft and driver is derived from this seed
     and the number of the test."""
@@ -199,8 +197,7 @@ class Generator(Protocol):
     campaign's results depend neither on the number of workers nor on interruptions.
 
     A generator that searches lists the goals that it supports in an attribute ``goals``; the cells of others
-    have no goal.
-    """
+    have no goal."""
 
     batch_size: int
     """Number of tests in one batch, about 10 to 20; up to two batches run at the same time."""

@@ -1,8 +1,7 @@
 """The Plan of a campaign: every combination of prompts, designers, drivers, simulators, generators and seeds.
 
 Each combination is a cell with a budget of its own; all other values of the plan are the same for all cells.
-A plan may be a TOML file; an error message names the wrong key and explains how to correct it.
-"""
+A plan may be a TOML file; an error message names the wrong key and explains how to correct it."""
 
 import math
 import tomllib

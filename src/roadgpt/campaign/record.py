@@ -16,8 +16,7 @@ column ``ended`` and all columns after it depend on the clock.
 A store from another person or from a bad disk may contain anything: text in place of a number, a number that
 is not finite, or a cell whose name is a path. When a store is opened, all tables except ``details`` are
 checked; this takes a second for a million tests. The table ``details`` holds long texts, such as designs, and
-each of its rows is checked when it is read.
-"""
+each of its rows is checked when it is read."""
 
 import json
 import math
@@ -259,8 +258,7 @@ class Record:
 
     group_seconds = 1.0
     """Longest time in seconds that a result waits to be stored; if the process is killed, the results of
-    this time are lost.
-    """
+    this time are lost."""
 
     def __init__(self, path: Path, db: sqlite3.Connection) -> None:
         self.path = path
@@ -673,8 +671,7 @@ class Store(Record):
 
     The file uses WAL and synchronous=NORMAL: committed transactions survive if the process is killed. A power
     cut may undo the last transactions, each as a whole. Their tests then count as not done and are run again
-    with the same results, since a batch depends only on the results of earlier batches.
-    """
+    with the same results, since a batch depends only on the results of earlier batches."""
 
     mode = "rw"
 

@@ -2,8 +2,7 @@
 
 Each folder has a record of its tests, see ``run.store``. The process that holds the folder's lock adds a row
 to it when the files of a Run are written; from then on the test has ended. Its tables are those of the
-plug-ins ``tables``.
-"""
+plug-ins ``tables``."""
 
 import sqlite3
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
@@ -105,8 +104,7 @@ class Campaign:
     roads: int  # number of roads requested
     made: tuple[Path, ...] = ()
     """The folders (this folder or parents of it) that this session created, innermost first. They are removed
-    if no road can be designed.
-    """
+    if no road can be designed."""
     tests: dict[int, FinishedTest] = field(default_factory=dict)  # the tests that have ended, by number
     failure: str = ""
     """Why no road could be designed; empty if a road was designed or none has been tried yet."""
@@ -316,8 +314,7 @@ class Campaign:
                 roads finished before this are saved.
             GivenUpError: the simulator failed three times in a row; the three roads have to be made again.
             UsageError: a plug-in is not installed, or another process is using the folder.
-            RoadGPTError: a file cannot be written.
-        """
+            RoadGPTError: a file cannot be written."""
         return self._runs(with_earlier=True)
 
     def _runs(self, with_earlier: bool) -> Iterator[Run]:
@@ -414,8 +411,7 @@ def work_in(
     If no road can be designed for a folder, ``Campaign.failure`` gives the reason, and the folder stays
     without tests. Messages refer to ``home``, in which ``workers`` processes write their log; with 0, the
     tests run in this process, where ``meter`` counts the use of language models. ``with_earlier``: the tests
-    of earlier sessions are yielded first.
-    """
+    of earlier sessions are yielded first."""
     with ExitStack() as stack:
         for folder in folders.values():
             stack.enter_context(atomic.alone_in(folder.folder))
@@ -482,8 +478,7 @@ def campaign(
     Raises:
         BriefError: the words cannot be read.
         UsageError: the folder contains something other than this campaign, something that decides results has
-            changed since its first road was made, or a plug-in is not installed.
-    """
+            changed since its first road was made, or a plug-in is not installed."""
     meter = meter or Meter.of(setup.chat)
     brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
     world = world_for(brief, setup.staged(world, brief.left_hand))

@@ -1,6 +1,5 @@
 """Schedules the tests of a campaign: when the next batch of a cell is requested from its generator, what each
-test may spend, which tests the workers get, and what is stored.
-"""
+test may spend, which tests the workers get, and what is stored."""
 
 import time
 from bisect import bisect
@@ -35,8 +34,7 @@ class BatchScheduler:
 
     Batch k is requested once all tests of batch k - 2 have ended; by then the generator was told the results
     of batches 0 to k - 2, and no others. If the tests of the cell run one after another, each is a batch of
-    its own and is requested once all earlier ones have ended.
-    """
+    its own and is requested once all earlier ones have ended."""
 
     def __init__(self, cell: Cell, store: Record) -> None:
         self.cell, self.shared = cell, Shared(cell)

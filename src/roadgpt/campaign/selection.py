@@ -2,8 +2,7 @@
 
 hard            all tests of the campaign in the folder ``hard``, or all runs of a folder of runs
 hard/c01        the tests of a cell
-hard/c01/17     one test; hard/17 if there is only one cell, or if ``hard`` is a folder of runs
-"""
+hard/c01/17     one test; hard/17 if there is only one cell, or if ``hard`` is a folder of runs"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,8 +21,7 @@ from roadgpt.run import Run
 Choice = Literal["failures", "faults", "worst"]
 """Which of the selected tests: "failures", all failures; "faults", a typical failure of each distinct
 fault; "worst", the failure with the smallest margin or, if no test failed, the passed test with the smallest
-margin.
-"""
+margin."""
 LONGEST = 255  # bytes of one name, in every file system of today
 DIGITS = 18  # of a number that a store can look for
 MOST_NEAR = 3  # names that are offered for a wrong one

@@ -42,8 +42,7 @@ class CellStatus:
     beyond: float | None
     """Largest distance of the car's body beyond the lane marking in any passed test, metres.
 
-    None if an earlier version of RoadGPT wrote the store.
-    """
+    None if an earlier version of RoadGPT wrote the store."""
     goal: Goal | None
     closed: str | None
     """Why the cell was closed before all its tests had been requested; None if it was not closed."""

@@ -6,8 +6,7 @@ and the tests whose ``drives`` the file holds. The drive of test 17 of cell c02 
 integers ``(columns, n)``: the second differences of each column, counted in steps. For a car's motion, these
 differences are near 0 and compress well (12 kB for a drive of 28 s). Two cumulative sums of a row, times the
 column's step, give the column of ``roadgpt.drive.COLUMNS`` in its unit. Others on the road, if there were
-any, are the entry ``c02/17/others``, as in ``drive.npz``.
-"""
+any, are the entry ``c02/17/others``, as in ``drive.npz``."""
 
 import io
 import json

@@ -7,8 +7,7 @@ and its job runs again on another one, as soon as one is free.
 The first jobs of a worker process set the module search paths, and prepare it. A worker sends the pickled
 value or error of each job. Calls and values are pickled one by one; if one cannot be unpickled, only its own
 job is lost. ``pickled`` and ``unpickled`` serve processes that RoadGPT started on one machine, and the
-executor ``ray``, whose workers may run on other machines of its cluster. Nothing else is read.
-"""
+executor ``ray``, whose workers may run on other machines of its cluster. Nothing else is read."""
 
 import os
 import pickle

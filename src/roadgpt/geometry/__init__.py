@@ -2,8 +2,7 @@
 
 A plane curve has the methods ``at(s)``, ``heading(s)`` and ``curvature(s)``, where ``s`` is the exact arc
 length. An elevation profile has the methods ``height(s)``, ``grade(s)`` and ``vertical_curvature(s)``, where
-``s`` is the arc length of the plane curve below it.
-"""
+``s`` is the arc length of the plane curve below it."""
 
 from roadgpt.geometry.curve import ElevationProfile, PlanCurve, wrap_angle
 from roadgpt.geometry.elevation import CubicProfile, GradeProfile, shifted

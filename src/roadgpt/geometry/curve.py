@@ -23,8 +23,7 @@ class PlanCurve(Protocol):
 
     def heading(self, s: ArrayLike) -> Array:
         """Returns headings in radians at stations ``s``, counter-clockwise from +x. Headings are continuous
-        along the curve, so they may exceed pi.
-        """
+        along the curve, so they may exceed pi."""
         ...
 
     def curvature(self, s: ArrayLike) -> Array:
@@ -51,8 +50,7 @@ class ElevationProfile(Protocol):
 def placed(s: ArrayLike, starts: Array) -> tuple[Array, NDArray[np.intp]]:
     """Returns, for each station, the distance from the start of its interval, and that interval's index.
     ``starts`` are the stations at which the intervals begin. The first interval is extended backwards and the
-    last one forwards.
-    """
+    last one forwards."""
     s = np.asarray(s, float)
     index = np.maximum(starts.searchsorted(s, side="right") - 1, 0)
     return s - starts[index], index

@@ -31,8 +31,7 @@ class GradeProfile:
     Args:
         z0: Height at the first station in metres.
         stations: At least two increasing stations in metres.
-        grades: The grade at each station as a ratio.
-    """
+        grades: The grade at each station as a ratio."""
 
     z0: float
     stations: tuple[float, ...]
@@ -69,8 +68,7 @@ class GradeProfile:
 
     def at(self, s: float) -> tuple[float, float]:
         """Returns the height in metres and the grade as a ratio at one station, without the overhead of
-        arrays.
-        """
+        arrays."""
         last = max(bisect_right(self.stations[:-1], s) - 1, 0)
         knots = self.knots[: last + 2]
         rises = [(s1 - s0) * (g1 + g0) / 2 for (s0, g0), (s1, g1) in pairwise(knots[:-1])]
@@ -110,8 +108,7 @@ class CubicProfile:
 
     Raises:
         ValueError: There is no station, the stations do not increase, their number differs from the number
-            of cubics, or a cubic does not have four coefficients.
-    """
+            of cubics, or a cubic does not have four coefficients."""
 
     stations: tuple[float, ...]
     coefficients: tuple[Cubic, ...]
@@ -142,8 +139,7 @@ class CubicProfile:
     @classmethod
     def smooth(cls, knots: Sequence[tuple[float, float]]) -> "CubicProfile":
         """Returns a profile that passes through one or more knots (station, height) in metres and has a grade
-        of 0 at each of them. The height is constant after the last knot.
-        """
+        of 0 at each of them. The height is constant after the last knot."""
         if any(s1 <= s0 for (s0, _), (s1, _) in pairwise(knots)):
             raise ValueError("the stations of the knots must increase")
         rows = []
@@ -179,8 +175,7 @@ class CubicProfile:
 
     def _place(self, s: ArrayLike) -> tuple[Array, Array]:
         """Returns the distance of each ``s`` from the start of its cubic, and the coefficients ``(4, ...)``
-        of that cubic.
-        """
+        of that cubic."""
         starts, table = self._table
         u, index = placed(s, starts)
         return u, table[:, index]
@@ -193,8 +188,7 @@ class CubicProfile:
 
     def cubics(self, s: ArrayLike) -> Array:
         """Returns the coefficients ``(n, 4)`` of the cubics that apply at stations ``s`` of shape ``(n,)``.
-        Each cubic is rewritten as a function of the distance from its station in ``s``.
-        """
+        Each cubic is rewritten as a function of the distance from its station in ``s``."""
         u, table = self._place(s)
         a, b, c, d = table
         return np.stack(_moved(a, b, c, d, u), axis=-1)
@@ -211,8 +205,7 @@ class CubicProfile:
 
     def beyond(self, low: float, high: float) -> tuple[float, float] | None:
         """Returns the station and the height that lies farthest outside a range; None if none is outside by
-        more than ``ROUNDING``. Whatever clamps or checks asks this, so nothing clamped is ever refused.
-        """
+        more than ``ROUNDING``. Whatever clamps or checks asks this, so nothing clamped is ever refused."""
         away, height, s = max((max(low - z, z - high), z, s) for z, s in self._peaks())
         return (s, height) if away > ROUNDING else None
 
@@ -254,8 +247,7 @@ def _roots(a: float, b: float, c: float) -> tuple[float, ...]:
 
 def shifted(cubics: Array, u: ArrayLike) -> Array:
     """Returns the coefficients ``(..., 4)`` of cubics after their origin is moved forward by ``u``. The
-    constant coefficient comes first, in ``cubics`` and in the result.
-    """
+    constant coefficient comes first, in ``cubics`` and in the result."""
     a, b, c, d = (cubics[..., n] for n in range(4))
     return np.stack(_moved(a, b, c, d, np.asarray(u, float)), axis=-1)
 

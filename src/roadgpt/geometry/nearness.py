@@ -20,8 +20,7 @@ def meeting(
 
     Points are x + iy in metres, ``(n,)`` and ``(m,)``, each with its station in metres; ``earlier`` may be
     ``z``, to compare a line with itself. A pair counts only if the point in ``z`` is more than ``neighbours``
-    metres farther along the line. Both arrays returned have the shape ``(number of pairs,)``.
-    """
+    metres farther along the line. Both arrays returned have the shape ``(number of pairs,)``."""
     blocks = [
         _near_block(z[first : first + BLOCK], s[first : first + BLOCK], earlier, earlier_s, apart, neighbours)
         for first in range(0, len(z), BLOCK)
@@ -46,8 +45,7 @@ def _near_block(
 def project(curve: PlanCurve, points: ArrayLike) -> tuple[Array, Array]:
     """Returns the stations ``s`` and offsets ``t`` (positive to the left) in metres of points ``(..., 2)``. A
     point beyond an end of the curve is projected onto that end. Its offset is then measured perpendicular to
-    the curve; the distance beyond the end is ignored.
-    """
+    the curve; the distance beyond the end is ignored."""
     points = np.asarray(points, float)
     flat = points.reshape(-1, 2)
     s = _nearest(curve, flat)

@@ -1,8 +1,7 @@
 """Defines plane curves made of lines, arcs and clothoids, like the reference line in OpenDRIVE.
 
 The curvature of a clothoid changes linearly with arc length, so its points are computed with Fresnel
-integrals (scipy.special.fresnel).
-"""
+integrals (scipy.special.fresnel)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,8 +21,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 @dataclass(frozen=True, slots=True)
 class Piece:
     """A line, arc or clothoid of ``length`` metres, whose curvature changes linearly from ``k0`` to ``k1``.
-    Curvatures are in 1/m, positive to the left.
-    """
+    Curvatures are in 1/m, positive to the left."""
 
     length: float
     k0: float = 0.0
@@ -34,8 +32,7 @@ class Piece:
 class PieceCurve:
     """A plane curve of lines, arcs and clothoids joined end to end. It starts at ``(x, y)`` in metres with
     heading ``heading0`` in radians. Beyond its ends, the first piece is extended backwards and the last piece
-    forwards.
-    """
+    forwards."""
 
     x: float
     y: float
@@ -74,8 +71,7 @@ class PieceCurve:
     @property
     def end(self) -> tuple[float, float, float]:
         """x and y in metres and the heading in radians at the end, as ``at`` and ``heading`` give them, but
-        computed faster.
-        """
+        computed faster."""
         s = turned = across = along = 0.0
         for piece in self.pieces[:-1]:
             dx, dy = _step(piece, piece.length, self.heading0 + turned)
@@ -101,8 +97,7 @@ class PieceCurve:
 
     def curvature(self, s: ArrayLike) -> Array:
         """Returns curvatures in 1/m at stations ``s``, positive to the left. At a station where the curvature
-        jumps, the result is the value after the jump.
-        """
+        jumps, the result is the value after the jump."""
         u, i = placed(s, self._table[0])
         _, _, _, _, k0, dk = self._table
         return np.asarray(k0[i] + u * dk[i])
@@ -111,8 +106,7 @@ class PieceCurve:
 def along_all(curves: Sequence[PieceCurve], stations: Sequence[Array]) -> tuple[Array, Array]:
     """Returns points ``(n, 2)`` in metres and headings ``(n,)`` in radians on one or more curves, in order.
     ``stations`` are those on each curve in metres. ``at`` and ``heading`` give the same values, but
-    more slowly.
-    """
+    more slowly."""
     counts = [len(curve.pieces) for curve in curves]
     is_piece = np.arange(max(counts)) < np.array(counts)[:, None]
     rows = np.zeros((3, *is_piece.shape))
@@ -138,8 +132,7 @@ def along_all(curves: Sequence[PieceCurve], stations: Sequence[Array]) -> tuple[
 def advance(u: Array, heading: Array, k: Array, dk: Array, length: Array) -> tuple[Array, Array]:
     """Returns the displacements along x and y in metres after ``u`` metres on a line, an arc or a clothoid
     that starts with a heading in radians and a curvature ``k`` in 1/m, which changes by ``dk`` per metre. The
-    ``length`` of the whole piece in metres serves only to choose an accurate formula.
-    """
+    ``length`` of the whole piece in metres serves only to choose an accurate formula."""
     dx, dy = map(np.asarray, _arc(u, heading, k))
     bend = np.abs(dk) * length**2
     if bend.any():
@@ -191,8 +184,7 @@ def _quadrature(u: Array, heading: Array, k: Array, dk: Array) -> tuple[Array, A
 
 def joined(pieces: Sequence[Piece]) -> tuple[Piece, ...]:
     """Returns pieces without those of zero length, and with neighbouring pieces of equal curvature merged.
-    Only lines and arcs are merged, never clothoids.
-    """
+    Only lines and arcs are merged, never clothoids."""
     out: list[Piece] = []
     for piece in pieces:
         if piece.length <= 1e-9:

@@ -2,8 +2,7 @@
 
 ``interpolate`` returns exactly the competition's points, including its quirks. ``SplineCurve`` is the same
 curve, parametrised by arc length. Source: the competition's ``road_points`` interpolation
-(scipy.interpolate.splprep without smoothing).
-"""
+(scipy.interpolate.splprep without smoothing)."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -41,8 +40,7 @@ def _spline(points: Array) -> tuple[Tck, Array]:
 def walked(points: Array) -> float:
     """Returns the length of a polyline through points ``(n, 2)``, summed as in the competition's library. A
     different order of summation could give 29.999... for a length of 30 m. Interpolation would then return
-    one node fewer than the competition's code.
-    """
+    one node fewer than the competition's code."""
     return float(np.cumsum(np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1)))[-1])
 
 
@@ -60,8 +58,7 @@ def interpolate(points: ArrayLike, fewest: int = MIN_NODES, decimals: int = DECI
         point, as in the competition's code, because ``arange`` overshoots by a rounding error.
 
     Raises:
-        UsageError: There are fewer than two points, or two successive points are the same.
-    """
+        UsageError: There are fewer than two points, or two successive points are the same."""
     points = np.asarray(points, float)
     tck, _ = _spline(points)
     count = max(fewest, int(walked(points[:, :2])))
@@ -72,8 +69,7 @@ def interpolate(points: ArrayLike, fewest: int = MIN_NODES, decimals: int = DECI
 @dataclass(frozen=True, eq=False)
 class SplineCurve:
     """The plan view of a cubic spline, parametrised by arc length in plan. The control points may have
-    heights.
-    """
+    heights."""
 
     tck: Tck
     knots: Array
@@ -88,8 +84,7 @@ class SplineCurve:
     @cached_property
     def _arc(self) -> tuple[Array, Array]:
         """Returns values of the spline parameter and the arc length in metres up to each, by Gauss-Legendre
-        quadrature.
-        """
+        quadrature."""
         u = np.unique(np.linspace(self.knots[:-1], self.knots[1:], _SPANS + 1).ravel())
         half = np.diff(u)[:, None] / 2
         inner = u[:-1, None] + half * (_NODES + 1)

@@ -12,8 +12,7 @@ returns the same value, so an executor keeps no record of past jobs. Each job en
 ``WorkerConfig.prepare`` runs once in each worker before its first job; it imports the modules that take
 seconds to import. Arguments that many jobs need are wrapped in a ``Shared``. The calls of ``map`` should go
 to free workers before the jobs that wait, and ``shutdown(cancel_futures=True)`` should end busy workers as
-well.
-"""
+well."""
 
 from roadgpt.campaign.workers import LostWorkerError, Shared, WorkerConfig
 

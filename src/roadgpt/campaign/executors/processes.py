@@ -2,8 +2,7 @@
 
 For each worker, a thread in the campaign's process sends it jobs and receives its answers, even while the
 main thread is busy. This executor does not use ``ProcessPoolExecutor``, which loses all jobs when one
-process dies.
-"""
+process dies."""
 
 import math
 import os

@@ -5,8 +5,7 @@ again, and no job is blamed for the failure. Results return to this process, the
 store.
 
 Ray's own retries are off: Ray cannot distinguish between a job that kills its workers and a machine that was
-switched off.
-"""
+switched off."""
 
 import os
 import socket

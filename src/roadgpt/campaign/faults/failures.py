@@ -9,8 +9,7 @@ Two failures are alike if their lanes have similar curvature and grade from 30 m
 after it. The lanes are aligned at the departures; the comparison allows a shift of up to 8 m. Clusters grow
 by complete linkage, so any two failures of one cluster are alike; ``groups_of`` describes an exception for
 more than 1000 failures. Each cluster is a group of similar failures; several groups may be one fault, see
-``remedy``.
-"""
+``remedy``."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -55,8 +54,7 @@ class Manner(NamedTuple):
     way: Way
     side: Literal["left", "right"] | None
     """The side to which the road bends; None if the road is straight there, or if the car stopped or was too
-    late.
-    """
+    late."""
     radius: float | None  # smallest radius of the bend's centre line, metres; None if ``side`` is None
 
 
@@ -71,18 +69,15 @@ class FailureReason:
     side: Literal["left", "right"] | None  # radius and side of the bend, as in ``Manner``
     entered: float
     """Speed, m/s, at the beginning of the bend or at the lane departure, whichever came first. If the car
-    stopped or was too late: the last speed of the drive.
-    """
+    stopped or was too late: the last speed of the drive."""
     needed: float
     """Largest friction coefficient required to follow the middle of the lane at the speeds driven; 0 if the
-    car stopped or was too late. On level ground, 0.93 means a lateral acceleration of 0.93 g.
-    """
+    car stopped or was too late. On level ground, 0.93 means a lateral acceleration of 0.93 g."""
     friction: float  # friction coefficient of the road
     grade: float  # grade of the road at the bend, as a ratio
     hill: float
     """Vertical acceleration from a crest (negative) or a dip (positive) at the speed driven, as a fraction
-    of g.
-    """
+    of g."""
 
 
 def reason_of(run: Run) -> FailureReason:
@@ -283,8 +278,7 @@ def groups_of(failures: Sequence[Surroundings], alike: float = ALIKE, most: int 
 
     Two failures of a group are at most ``alike`` apart. At most ``most`` are clustered at a time; each later
     one joins the group whose most typical failure is nearest and alike, and those that join none are
-    clustered next.
-    """
+    clustered next."""
     found, left, count = np.full(len(failures), -1), np.arange(len(failures)), 0
     while len(left):
         now, left = left[:most], left[most:]

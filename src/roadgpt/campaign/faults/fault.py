@@ -4,8 +4,7 @@ A fault is a set of failures that disappear with the same small change of the te
 by the similarity of the road around them. Once ``remedy`` has driven some failures of each group with
 small changes, the groups are joined into faults. Then ``remedy`` drives further failures of each fault with
 the changes, ``AT_A_TIME`` failures at a time, until ``CHECKED`` failures of the fault have disappeared. After
-each time, the groups are joined again, with the new results.
-"""
+each time, the groups are joined again, with the new results."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -155,8 +154,7 @@ def faults_in(folder: Path, most: int | None = None, cell: str = "") -> Faults:
     """Returns the distinct faults of a run, of a folder of runs, or of a campaign, or of one of its cells.
 
     At most ``most`` failures are compared, evenly spread; all of them once small changes were tried on some,
-    since the results belong to groups that were formed from all.
-    """
+    since the results belong to groups that were formed from all."""
     known, failures = failures_of(folder, None if has_remedies(folder) else most, cell)
     groups = _grouped(known)
     stored = {each.name: stored_remedies(folder, each) for each in known}

@@ -11,8 +11,7 @@ DIR/faults/
   remedies/        which small changes remove a failure (see ``remedy``)
   failures.csv     one line per failure, with the fault that it belongs to, if any
 
-For a folder of runs, the level c01/ is left out.
-"""
+For a folder of runs, the level c01/ is left out."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace

@@ -2,8 +2,7 @@
 
 The method is delta debugging: A. Zeller and R. Hildebrandt, Simplifying and Isolating Failure-Inducing Input,
 IEEE Transactions on Software Engineering 28 (2002). Unless the drives run out, the simplified road is
-1-minimal: any single further simplification makes the failure disappear.
-"""
+1-minimal: any single further simplification makes the failure disappear."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

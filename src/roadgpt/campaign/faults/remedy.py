@@ -11,8 +11,7 @@ DIR/faults/remedies/c01/0017.json    for each change, whether it removes the fai
 
 For a folder of runs, the level c01/ is left out. A change makes some samples of a road longer or shorter and
 changes their curvature or grade; the road after them moves accordingly. The changed road is built for one
-drive only, so it may leave the map or overlap itself.
-"""
+drive only, so it may leave the map or overlap itself."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -142,8 +141,7 @@ class FailurePlace(NamedTuple):
     bend: Bend | None  # the bend at the departure; None if the road is straight there
     before: Bend | None
     """The last bend that ends less than 40 m before ``bend`` (before the departure if ``bend`` is None); None
-    if there is no such bend.
-    """
+    if there is no such bend."""
     after: Bend | None  # the bend after ``bend``; None if none begins within 40 m after the departure
 
 
@@ -206,8 +204,7 @@ def remedies_of(run: Run) -> Removed:
     """Drives a failing Run's road with each change, and returns which changes make the failure disappear.
 
     If a small change does, the larger one of its kind is not driven and counts as removing it, too. No change
-    applies to a road with its own cross-section but no Design, since that is given by station.
-    """
+    applies to a road with its own cross-section but no Design, since that is given by station."""
     road, verdict = run.road, run.verdict
     assert road is not None
     assert verdict is not None
@@ -334,8 +331,7 @@ def faults_by_remedy(groups: Sequence[TriedGroup]) -> list[str | None]:
 
     Each change in a set defines one fault. Of the sets of one to four changes that keep ``WITHIN``,
     ``ACROSS`` and ``FEWEST``, the one whose faults have most failures is taken, where a failure that needs a
-    larger change counts 0.8; of equally good ones that with the fewest and smallest changes.
-    """
+    larger change counts 0.8; of equally good ones that with the fewest and smallest changes."""
     sizes = np.array([size for size, _ in groups], float)
     shares = np.array([[_share(removed, remedy.name) for remedy in REMEDIES] for _, removed in groups])
     best: list[int | None] = [None] * len(groups)

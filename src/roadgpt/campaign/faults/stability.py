@@ -2,8 +2,7 @@
 
 A disturbance changes the friction, the start position, and the delay of the driver's perception. A failure
 that recurs in at least half of the drives counts as stable, and is due to the road; other failures are
-attributed to chance.
-"""
+attributed to chance."""
 
 from collections import deque
 from collections.abc import Callable

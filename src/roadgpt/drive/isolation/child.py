@@ -1,8 +1,7 @@
 """Main loop of a driver's own process: creates one driver after another, and passes views to it.
 
 Nothing in this process interrupts a slow driver: if it takes too long, RoadGPT ends this process. The driver
-may therefore use alarms, signals and threads as it likes.
-"""
+may therefore use alarms, signals and threads as it likes."""
 
 import json
 import os

@@ -3,8 +3,7 @@ workers of campaigns.
 
 A Child is this process's end of the connection, ``serve`` the other one. A process that is late, ends or
 takes too much memory costs one answer; whoever asked starts another one. All that a process has started ends
-with it, and it ends with its parent.
-"""
+with it, and it ends with its parent."""
 
 import os
 import pickle
