@@ -7,14 +7,7 @@ import numpy as np
 
 from roadgpt.compiled import compiled, inlined
 from roadgpt.drive.drive import Box, FloatArray
-from roadgpt.drive.sampled_road import (
-    CURVATURE,
-    SampledRoad,
-    locate_on,
-    room_at,
-    sample_road,
-    stations_of,
-)
+from roadgpt.drive.sampled_road import CURVATURE, SampledRoad, locate_on, room_at, sample_road, stations_of
 
 if TYPE_CHECKING:
     from roadgpt.drive.drive import Drive

@@ -57,10 +57,7 @@ def write_run_report(folder: Path, command: str = "") -> Path:
     summaries = fault_summaries(folder, failed)
     kinds = [source_of(setup.designer, parts, kind) for kind in KINDS]
     opening = [overview(parts, world.site.map_size), faults(folder, failed, summaries)]
-    sections = [
-        *filter(None, opening),
-        validity(parts, kinds),
-    ]
+    sections = [*filter(None, opening), validity(parts, kinds)]
     if setup.drives:
         left = source_of(setup.designer, parts, LEFT)
         sections += [departures(parts, [left] if left.total else [])]
@@ -188,7 +185,7 @@ def diversity(parts: Sequence[RoadGroup], between: Sequence[Table] = ()) -> Sect
         "shares of their lengths. Their distance is the root mean square in metres. Near duplicates are "
         "pairs less than 5.5 m and 2 percentage points of grade apart with the same number of turns. "
         "Similarity, from 0 to 1, is the mean of number, sequence and direction of turns, length, incline "
-        "and shape.",
+        "and shape."
     ]
     blocks += [table for table in (_within(parts), *between) if table.rows]
     twins = _twins(parts)

@@ -164,10 +164,7 @@ LANE: dict[str, Any] = {"within": LANE_WIDTHS}
 class Parts(Frozen):
     """The plug-ins that make and drive roads, by name, and how they work."""
 
-    reader: str = Field(
-        "model",
-        description="Reads the words: model, chat, or plan.",
-    )
+    reader: str = Field("model", description="Reads the words: model, chat, or plan.")
     designer: str = Field("planner", description="planner, or thesis (a language model).")
     rules: Literal["strict", "sbft"] = Field(
         "strict", json_schema_extra=RARE,

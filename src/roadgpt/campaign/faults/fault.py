@@ -11,13 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from roadgpt.campaign.faults.failures import LocatedFailure, Way, failures_of, groups_of, typical
-from roadgpt.campaign.faults.remedy import (
-    REMEDIES,
-    Removed,
-    faults_by_remedy,
-    has_remedies,
-    stored_remedies,
-)
+from roadgpt.campaign.faults.remedy import REMEDIES, Removed, faults_by_remedy, has_remedies, stored_remedies
 from roadgpt.campaign.model import NumberedTest
 from roadgpt.plural import plural
 

@@ -14,17 +14,7 @@ import click
 from roadgpt.cli import options
 from roadgpt.cli.commands.evaluate import write_report
 from roadgpt.cli.commands.make import beside, understood
-from roadgpt.cli.options import (
-    PATH,
-    Argument,
-    GroupedCommand,
-    Heading,
-    Option,
-    folder,
-    measure,
-    named,
-    whole,
-)
+from roadgpt.cli.options import PATH, Argument, GroupedCommand, Heading, Option, folder, measure, named, whole
 from roadgpt.cli.roads import MOST_TOLD, named_in_errors, refuse_file, roads_in, source_of
 from roadgpt.cli.streams import progress, resumable, warn, watched
 from roadgpt.errors import PartError, UsageError, command_line

@@ -342,13 +342,7 @@ def step_once(
 
 @inlined
 def _steer_and_pedals(
-    mj: MujocoHandles,
-    car: Any,
-    axles: Any,
-    state: FloatArray,
-    steer: float,
-    throttle: float,
-    brake: float,
+    mj: MujocoHandles, car: Any, axles: Any, state: FloatArray, steer: float, throttle: float, brake: float
 ) -> None:
     steer = min(max(steer, -car.max_steer_angle), car.max_steer_angle)
     moved = min(max(steer - state[STEER], -car.max_steer_rate * STEP), car.max_steer_rate * STEP)
