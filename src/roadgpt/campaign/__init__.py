@@ -18,32 +18,23 @@ from typing import Any
 
 # Each module is imported when it is first used, because a starting worker needs none of them yet.
 _MODULES = {
-    "Campaign": "run_folder",
-    "Cell": "model",
-    "CellBudget": "model",
-    "Generator": "model",
-    "Goal": "model",
-    "Pool": "model",
-    "Proposal": "model",
-    "Result": "model",
-    "Plan": "plan",
-    "Record": "record",
-    "begin": "lifecycle",
-    "campaign": "run_folder",
-    "read_plan": "plan",
-    "kept_run": "folder_record",
-    "run_again": "folder_record",
-    "status_of": "status",
-    "work": "lifecycle",
+    "folder_record": "kept_run run_again",
+    "lifecycle": "begin work",
+    "model": "Cell CellBudget Generator Goal Pool Proposal Result",
+    "plan": "Plan read_plan",
+    "record": "Record",
+    "run_folder": "Campaign campaign",
+    "status": "status_of",
 }
 
-__all__ = [*sorted(_MODULES)]
+__all__ = sorted(name for names in _MODULES.values() for name in names.split())
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _MODULES:
-        raise AttributeError(f"roadgpt.campaign has no '{name}'; it offers {', '.join(sorted(_MODULES))}")
-    return getattr(import_module(f"roadgpt.campaign.{_MODULES[name]}"), name)
+    module = next((module for module, names in _MODULES.items() if name in names.split()), None)
+    if module is None:
+        raise AttributeError(f"roadgpt.campaign has no '{name}'; it offers {', '.join(__all__)}")
+    return getattr(import_module(f"roadgpt.campaign.{module}"), name)
 
 
 class _Room(ModuleType):

@@ -105,8 +105,7 @@ class Result:
     max_oob: float | None = None
     """Largest share of the car that was outside its lane at one time, 0 to 1."""
     beyond: float | None = None
-    """Largest distance of the car's body beyond the lane marking, metres. None if the road was not driven,
-    or if an earlier version of RoadGPT wrote the result."""
+    """Largest distance of the car's body beyond the lane marking, metres; None if it was not driven."""
     at_s: float | None = None
     """Station of the failure, metres along the road; None if the car did not fail."""
     side: Side | None = None

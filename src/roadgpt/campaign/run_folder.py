@@ -5,8 +5,7 @@ to it when the files of a Run are written; from then on the test has ended. Its 
 plug-ins ``tables``."""
 
 import sqlite3
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, closing
 from dataclasses import dataclass, field, replace
 from hashlib import sha256
@@ -425,9 +424,7 @@ def work_in(
         cells = [each.cell(name) for name, each in left.items()]
         setups = tuple(dict.fromkeys(cell.request.setup for cell in cells))
         staff = WorkerConfig(max(workers, 1), WorkerSetup(setups), PATIENCE, home / LOG)
-        kind: Callable[[WorkerConfig], Executor] = (
-            plugins.find("executors", "processes") if workers else InProcess
-        )
+        kind = plugins.find("executors", "processes") if workers else InProcess
         places = {name: each.folder for name, each in left.items()}
         writer = RunWriter(places, draw, None if workers else meter or Meter())
         store = stack.enter_context(FolderStore(home, {**left}, cells))

@@ -40,9 +40,7 @@ class CellStatus:
     max_oob: float | None
     """Largest share of the car that was outside its lane at one time in any passed test, 0 to 1."""
     beyond: float | None
-    """Largest distance of the car's body beyond the lane marking in any passed test, metres.
-
-    None if an earlier version of RoadGPT wrote the store."""
+    """Largest distance of the car's body beyond the lane marking in any passed test, metres."""
     goal: Goal | None
     closed: str | None
     """Why the cell was closed before all its tests had been requested; None if it was not closed."""
@@ -169,14 +167,13 @@ def status_of(folder: Path) -> Status:
     """Returns the state of a campaign or of a folder of runs."""
     with open_record(folder) as record:
         cells = cell_statuses(record)
-        outcomes: Counter[str] = Counter()
-        for cell in cells:
-            outcomes.update(cell.outcomes)
+        outcomes = sum((Counter(cell.outcomes) for cell in cells), Counter[str]())
         ((seconds, seen),) = record.query(
             "SELECT coalesce(sum(seen - begun), 0), coalesce(max(seen * (1 - is_over)), 0) FROM sittings"
         )
         is_finished = bool(record.meta("finished"))
         is_running = not is_finished and time.time() - seen < FRESH
+        has_scenarios = any("scenario" in each.settings for each in record.cells())
         tokens, cost = record.spent()
         return Status(
             folder=str(folder),
@@ -189,9 +186,7 @@ def status_of(folder: Path) -> Status:
             tokens=tokens,
             cost_usd=cost,
             cells=cells,
-            scenarios=_scenarios(record)
-            if any("scenario" in each.settings for each in record.cells())
-            else {},
+            scenarios=_scenarios(record) if has_scenarios else {},
         )
 
 

@@ -19,10 +19,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.drive import COLUMNS, Box, Columns, Drive, Handover
-from roadgpt.drive.drive import OTHERS, packed, unpacked
+from roadgpt.drive import COLUMNS, Columns, Drive
+from roadgpt.drive.drive import OTHERS, add_array, packed, unpacked
 from roadgpt.errors import UsageError
-from roadgpt.reading import arrays_in, json_of, strictly
+from roadgpt.reading import arrays_in, json_of
 from roadgpt.run.atomic import write_whole
 
 TRACES, SUFFIX = "traces", ".npz"
@@ -35,7 +35,6 @@ STEPS = {
     **dict.fromkeys(("heading", "pitch", "roll", "yaw_rate", "steer", "outside"), FINE),
     **dict.fromkeys(("ax", "ay"), COARSE),  # m/s^2
 }
-RARE = ("handovers", "lights", "missed", "limited")  # of the header, only where they are not empty
 NOT_A_NUMBER = np.iinfo(np.int32).min
 
 Whole = NDArray[np.int32]
@@ -45,20 +44,15 @@ class Trace(NamedTuple):
     """A Drive whose values are integer multiples of small steps, as stored in a file."""
 
     header: dict[str, Any]
-    """Driver, simulator, seed, how the drive ended, the dimensions of the car, and RARE, if any."""
+    """What the drive has beside its columns, as ``drive.packed`` returns it."""
     rows: Whole  # the columns in their order, ``(columns, n)``
     others: NDArray[np.int64] | None = None
-    """The states of others on the road as ``drive.packed`` returns them; None if nobody else was there."""
+    """The states of others on the road, as ``drive.packed`` returns them."""
 
 
 def trace_of(drive: Drive) -> Trace:
     """Returns a Drive as a Trace, in which every value is rounded to a multiple of its column's step."""
-    header: dict[str, Any] = {name: getattr(drive, name) for name in ("driver", "simulator", "seed", "ended")}
-    header["car"] = drive.car._asdict()
-    header |= {name: found for name in RARE if (found := getattr(drive, name))}
-    states = None
-    if drive.others is not None:
-        header["others"], states = packed(drive.others)
+    header, states = packed(drive)
     limit, values = np.iinfo(np.int32).max, np.stack([drive[name] for name in COLUMNS])
     finite = np.nan_to_num(values, posinf=np.inf, neginf=-np.inf)
     steps = np.clip(np.round(finite / [[STEPS[name]] for name in COLUMNS]), -limit, limit)
@@ -67,16 +61,10 @@ def trace_of(drive: Drive) -> Trace:
 
 def drive_of(trace: Trace) -> Drive:
     """Returns the Drive of a Trace; its values differ by at most half a step from those of the original."""
-    header = dict(trace.header)
-    header["handovers"] = strictly(tuple[Handover, ...], header.get("handovers", ()))
-    header |= {name: strictly(tuple[str, ...], header.get(name, ())) for name in ("missed", "limited")}
     # divided by the inverse, so that 0.02 s is 0.02 s and not its neighbour
     values = trace.rows / [[round(1 / STEPS[name])] for name in COLUMNS]
     values[trace.rows == NOT_A_NUMBER] = np.nan
-    columns = Columns(dict(zip(COLUMNS, values, strict=True)))
-    if trace.others is not None:
-        header["others"] = unpacked(header["others"], trace.others, float(columns["time"][-1]))
-    return Drive(columns=columns, **{**header, "car": Box(**header["car"])})
+    return unpacked(trace.header, Columns(dict(zip(COLUMNS, values, strict=True))), trace.others)
 
 
 def write_traces(folder: Path, number: int, drives: Sequence[tuple[str, int, Trace]]) -> str:
@@ -90,13 +78,13 @@ def write_traces(folder: Path, number: int, drives: Sequence[tuple[str, int, Tra
     }
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w") as archive:
-        _add(archive, "header", np.array(json.dumps(header)))
+        add_array(archive, "header", np.array(json.dumps(header)), LEVEL)
         for cell, test, trace in drives:
             start = np.zeros((len(COLUMNS), 2), np.int32)
             # these int32 may overflow; the sums then overflow back, so that even the largest values are exact
-            _add(archive, f"{cell}/{test}", np.diff(trace.rows, 2, prepend=start))
+            add_array(archive, f"{cell}/{test}", np.diff(trace.rows, 2, prepend=start), LEVEL)
             if trace.others is not None:
-                _add(archive, f"{cell}/{test}/{OTHERS}", trace.others)
+                add_array(archive, f"{cell}/{test}/{OTHERS}", trace.others, LEVEL)
     name = f"{number:07d}{SUFFIX}"
     path = folder / TRACES / name
     path.parent.mkdir(exist_ok=True)
@@ -104,14 +92,6 @@ def write_traces(folder: Path, number: int, drives: Sequence[tuple[str, int, Tra
     _to_disk(path)
     _to_disk(path.parent)
     return name
-
-
-def _add(archive: zipfile.ZipFile, name: str, values: NDArray[Any]) -> None:
-    entry = io.BytesIO()
-    np.lib.format.write_array(entry, values, version=(1, 0), allow_pickle=False)
-    # with a fixed date, so that the bytes do not depend on the clock
-    info = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
-    archive.writestr(info, entry.getvalue(), zipfile.ZIP_DEFLATED, LEVEL)
 
 
 def _to_disk(path: Path) -> None:

@@ -12,9 +12,7 @@ from roadgpt.design.road_search import sufficient_map
 from roadgpt.road import World
 from roadgpt.road.world import KMH, Limits
 
-MOTORWAY_LIMIT = (
-    110 / KMH
-)  # m/s, the design speed of urban and rural freeways is 110 km/h or more (Green Book, ch. 8)
+MOTORWAY_LIMIT = 110 / KMH  # m/s, least design speed of urban and rural freeways (Green Book, chapter 8)
 
 
 def world_for(brief: Brief | None, world: World) -> World:

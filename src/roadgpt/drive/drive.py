@@ -45,6 +45,7 @@ COLUMNS = {
     "outside": "0..1, share of the car's box outside its lane",
 }
 """Names of the columns in their order, each with its unit and meaning."""
+RARE = ("handovers", "lights", "missed", "limited")  # of a header, only where they are not empty
 OTHERS = "others"
 """Name of the array of the others' states: whole numbers of shape (samples, actors, 5); GONE while an actor
 is not there."""
@@ -207,26 +208,14 @@ class Drive:
 
     def to_bytes(self) -> bytes:
         """Returns the drive as a compressed .npz file; the same Drive gives the same bytes."""
-        header = {
-            "format": FORMAT,
-            "driver": self.driver,
-            "simulator": self.simulator,
-            "seed": self.seed,
-            "ended": self.ended,
-            "car": self.car._asdict(),
-            **({"handovers": self.handovers} if self.handovers else {}),
-            **({OTHERS: packed(self.others)[0]} if self.others is not None else {}),
-            **({"lights": True} if self.lights else {}),
-            **({"missed": self.missed} if self.missed else {}),
-            **({"limited": self.limited} if self.limited else {}),
-        }
+        header, states = packed(self)
         buffer = io.BytesIO()
         with zipfile.ZipFile(buffer, "w") as archive:
-            _write(archive, "header", np.array(json.dumps(header, sort_keys=True)))
+            add_array(archive, "header", np.array(json.dumps({"format": FORMAT, **header}, sort_keys=True)))
             for name, column in self.columns.items():
-                _write(archive, name, column)
-            if self.others is not None:
-                _write(archive, OTHERS, packed(self.others)[1])
+                add_array(archive, name, column)
+            if states is not None:
+                add_array(archive, OTHERS, states)
         return buffer.getvalue()
 
     @classmethod
@@ -251,43 +240,49 @@ class Drive:
 def _checked(header: Any, arrays: Mapping[str, NDArray[Any]]) -> Drive:
     if header["format"] != FORMAT:
         raise ValueError(f"its format is {header['format']}, not {FORMAT}")
-    if header["ended"] not in get_args(Ended):
-        raise ValueError(f"no drive ends with '{header['ended']}'")
-    others = None
-    if OTHERS in header:
-        arrays = dict(arrays)
-        others = unpacked(header[OTHERS], arrays.pop(OTHERS), float(arrays["time"][-1]))
+    arrays = dict(arrays)
+    states = arrays.pop(OTHERS) if OTHERS in header else None
     if set(arrays) != set(COLUMNS):
         raise ValueError(f"columns missing or unknown: {', '.join(sorted(set(arrays) ^ set(COLUMNS)))}")
     if any(array.ndim != 1 for array in arrays.values()):
         raise ValueError("a column is a list of numbers")
     if len({len(array) for array in arrays.values()}) != 1 or not len(arrays["time"]):
         raise ValueError("columns are of one length, and not empty")
+    return unpacked(header, Columns({name: arrays[name] for name in COLUMNS}), states)
+
+
+def packed(drive: Drive) -> tuple[dict[str, Any], NDArray[np.int64] | None]:
+    """Returns what a Drive has beside its columns, as JSON data, and the states of others as whole numbers,
+    from which ``unpacked`` makes an equal Drive."""
+    header: dict[str, Any] = {name: getattr(drive, name) for name in ("driver", "simulator", "seed", "ended")}
+    header["car"] = drive.car._asdict()
+    header |= {name: found for name in RARE if (found := getattr(drive, name))}
+    if drive.others is None:
+        return header, None
+    header[OTHERS] = [[each.name, each.kind, each.size] for each in drive.others.actors]
+    return header, np.nan_to_num(np.rint(drive.others.states * PER_UNIT), nan=GONE).astype(np.int64)
+
+
+def unpacked(header: Any, columns: Columns, states: NDArray[Any] | None) -> Drive:
+    """Returns the Drive of ``packed``, with its columns; raises ValueError if it is broken."""
+    if header["ended"] not in get_args(Ended):
+        raise ValueError(f"no drive ends with '{header['ended']}'")
     return Drive(
         driver=str(header["driver"]),
         simulator=str(header["simulator"]),
         seed=int(header["seed"]),
-        columns=Columns({name: arrays[name] for name in COLUMNS}),
+        columns=columns,
         ended=header["ended"],
         car=Box(**{name: float(value) for name, value in header["car"].items()}),
         handovers=strictly(tuple[Handover, ...], header.get("handovers", ())),
-        others=others,
+        others=None if states is None else _tracks(header[OTHERS], states, float(columns["time"][-1])),
         lights=bool(header.get("lights", False)),
         missed=strictly(tuple[str, ...], header.get("missed", ())),
         limited=strictly(tuple[str, ...], header.get("limited", ())),
     )
 
 
-def packed(others: "Tracks") -> tuple[list[Any], NDArray[np.int64]]:
-    """Returns the actors as JSON data, and their states as whole numbers, from which ``unpacked`` makes equal
-    Tracks."""
-    actors = [[each.name, each.kind, each.size] for each in others.actors]
-    return actors, np.nan_to_num(np.rint(others.states * PER_UNIT), nan=GONE).astype(np.int64)
-
-
-def unpacked(actors: Any, states: NDArray[Any], duration: float) -> "Tracks":
-    """Returns the Tracks of ``packed``, of a drive of so many seconds. Raises ValueError if they are
-    broken."""
+def _tracks(actors: Any, states: NDArray[Any], duration: float) -> "Tracks":
     from roadgpt.brief.scene import ActorKind
     from roadgpt.traffic import STEP, Actor, Size, Tracks
 
@@ -305,12 +300,13 @@ def unpacked(actors: Any, states: NDArray[Any], duration: float) -> "Tracks":
     return Tracks(found, np.where(is_gone, np.nan, states / PER_UNIT))
 
 
-def _write(archive: zipfile.ZipFile, name: str, values: NDArray[Any]) -> None:
-    # A fixed date, so that the bytes do not depend on the clock.
-    entry = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
-    entry.compress_type = zipfile.ZIP_DEFLATED
-    with archive.open(entry, "w") as file:
-        np.lib.format.write_array(file, np.asanyarray(values), version=(1, 0), allow_pickle=False)
+def add_array(archive: zipfile.ZipFile, name: str, values: NDArray[Any], level: int | None = None) -> None:
+    """Adds an array to an archive of NumPy, with a fixed date, so that its bytes do not depend on the
+    clock."""
+    entry = io.BytesIO()
+    np.lib.format.write_array(entry, values, version=(1, 0), allow_pickle=False)
+    info = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
+    archive.writestr(info, entry.getvalue(), zipfile.ZIP_DEFLATED, level)
 
 
 def check_motion(drive: Drive) -> None:

@@ -56,9 +56,7 @@ NAMED = 30  # failures, and pairs of roads of a campaign with one cell, that are
 STEPS = 200  # of a curve
 SAMPLE = 100_000  # tests whose features are read, evenly spread
 MARGINS = (-2.0, 2.0, 0.1)  # m: from, to, width of a bar; what lies beyond is in the outermost
-MOST_SEARCHED = (
-    1000  # tests of all cells in which pairs are searched; tests half-way between two others come first
-)
+MOST_SEARCHED = 1000  # tests of all cells in which pairs are searched, those between two others first
 FEW_PAIRS = 10  # pairs that are shown per cell for a campaign with several cells
 NEAR = (
     "tests.number IN (SELECT number FROM tests JOIN details USING (cell, number) WHERE tests.cell = ? "
@@ -239,13 +237,12 @@ def _card(command: str, record: Record, status: Status) -> dict[str, str]:
     recorded = (record.versions(driver) for driver in {each.driver: None for each in status.cells})
     versions = (", ".join(f"{name} {its}" for name, its in each.items()) for each in recorded)
     seeds = sorted({each.seed for each in status.cells})
+    spent = f"{status.tokens:,} tokens, {status.cost_usd:.4f} USD" if status.tokens else "none"
     return {
         **({"command": command} if command else {}),
         "seeds": ", ".join(map(str, seeds[:20])),
         "tests": f"{status.done:,}",
-        "language models": f"{status.tokens:,} tokens, {status.cost_usd:.4f} USD"
-        if status.tokens
-        else "none",
+        "language models": spent,
         "versions": "; ".join(dict.fromkeys(versions)),
     }
 
@@ -417,9 +414,7 @@ def nearest_sentence(pairs: Sequence[Side]) -> list[str]:
 
 
 def boundary(folder: Path, pairs: Sequence[Side]) -> list[Block]:
-    """Returns a table of pairs of roads, with the largest difference of each pair, if there are any."""
-    if not pairs:
-        return []
+    """Returns a table of pairs of roads, with the largest difference of each pair."""
     rows = [_row(folder, *side) for side in pairs]
     name, first, *_ = pairs[0]
     names = [f"{folder}/{name}/{at}" for at in (first.kept, first.lost)]

@@ -140,10 +140,8 @@ class OpenAI:
         form = None if schema is None else schema_of(schema)
         told = list(messages)
         if form is not None and not by_schema:
-            text = (
-                "Answer with one JSON object and nothing else. It must fit this JSON schema, with every field"
-            )
-            text += f":\n{json.dumps(form, separators=(',', ':'))}"
+            text = "Answer with one JSON object and nothing else. It must fit this JSON schema, with every "
+            text += f"field:\n{json.dumps(form, separators=(',', ':'))}"
             told.append(Message(role="user", text=text))
         prompt = tokens_in(*(message.text for message in told))
         room = self._account.meter.reply_tokens(told, self._settings, self._model)

@@ -207,13 +207,9 @@ def ground(
 
 
 def _way(
-    relief: "Relief",
-    start: str | None,
-    goal: str | None,
-    max_grade: float,
-    min_radius: float,
+    relief: "Relief", start: str | None, goal: str | None, max_grade: float, min_radius: float,
     road: Path | None,
-) -> dict[str, Any]:
+) -> dict[str, Any]:  # fmt: skip
     """Finds a way over land, writes it as a road file, and returns what is told about it."""
     from roadgpt.ground.ground import Ground, slope_for
     from roadgpt.ground.wayfinding import way_between
@@ -251,17 +247,9 @@ IMPORT_OPTIONS = (
     cls=GroupedCommand, params=[Argument("file", "FILE", "Name a file with a road.", PATH), *IMPORT_OPTIONS]
 )
 def import_(
-    file: Path,
-    wanted: str | None,
-    route: str | None,
-    start: str | None,
-    goal: str | None,
-    count: int | None,
-    seed: int,
-    out: Path | None,
-    keep_place: bool,
-    quiet: bool,
-) -> int:
+    file: Path, wanted: str | None, route: str | None, start: str | None, goal: str | None,
+    count: int | None, seed: int, out: Path | None, keep_place: bool, quiet: bool,
+) -> int:  # fmt: skip
     """Read a map or a road from a file of another tool, and write it as a road file.
 
     FILE is OpenDRIVE (.xodr), a test of SBFT or SDC-Scissor, a list of points or tests (.json, .jsonl), or a
@@ -362,13 +350,9 @@ def _point(text: str) -> tuple[float, float]:
 
 
 def _write_map(
-    file: Path,
-    found: "ImportedMap",
-    ways: "Sequence[tuple[Leg, ...]]",
-    out: Path | None,
-    keep_place: bool,
+    file: Path, found: "ImportedMap", ways: "Sequence[tuple[Leg, ...]]", out: Path | None, keep_place: bool,
     quiet: bool,
-) -> int:
+) -> int:  # fmt: skip
     """Writes a map, or one file for each route through it, and prints what they are like."""
     from roadgpt.brief.junctions import NAMES
     from roadgpt.network import Route

@@ -54,9 +54,7 @@ CONTROL = STEPS * STEP
 FALLEN = 2.0  # m below the road: from there RoadGPT's car cannot return to its floating road
 MISHAPS: tuple[Mishap | None, ...] = (None, "fell", "rolled", "crashed", "sank")
 FELL, ROLLED, CRASHED, SANK = range(1, 5)
-SHOCK = (
-    80.0  # m/s^2, mean of a control step, beside the road: no tyre brakes that hard, a slope stopped the car
-)
+SHOCK = 80.0  # m/s^2, mean of a control step, beside the road: no tyre brakes so hard, but a slope does
 IN_THE_AIR = 0.5  # m above the land, of a car that falls off a bridge
 BESIDE_WALL = 0.9  # m from a wall to the middle of the car that touches it
 CONTAINED = 10.4  # m/s across a parapet up to which it holds a car (EN 1317-2, N2: 110 km/h at 20 degrees)
