@@ -10,7 +10,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.patches import Polygon
 from matplotlib.patheffects import withStroke
 
-from roadgpt.brief.scene import VEHICLES, ActorKind
+from roadgpt.brief.scene import VEHICLES
 from roadgpt.geometry.curve import Array
 from roadgpt.report.canvas import BLUE, GREEN, HALO, INK, POINTS, SOFT, VERMILLION, inches_of
 from roadgpt.report.plan_view import Frame, draw_road
@@ -22,19 +22,13 @@ from roadgpt.verdict.contact import turned
 from roadgpt.verdict.verdict import IncidentKind
 
 NAVY, BROWN, PINK = "#1f3763", "#7a4b16", "#c2408f"
-COLOURS: dict[ActorKind, tuple[str, str]] = {
-    "car": ("car, van", BLUE),
-    "van": ("car, van", BLUE),
-    "truck": ("truck, bus", NAVY),
-    "bus": ("truck, bus", NAVY),
-    "motorcycle": ("two wheels", GREEN),
-    "bicycle": ("two wheels", GREEN),
-    "adult": ("person", PINK),
-    "child": ("person", PINK),
+COLOURS = {
+    **dict.fromkeys(("car", "van"), ("car, van", BLUE)),
+    **dict.fromkeys(("truck", "bus"), ("truck, bus", NAVY)),
+    **dict.fromkeys(("motorcycle", "bicycle"), ("two wheels", GREEN)),
+    **dict.fromkeys(("adult", "child"), ("person", PINK)),
     "animal": ("animal", BROWN),
-    "cones": ("thing", SOFT),
-    "barrier": ("thing", SOFT),
-    "lost_load": ("thing", SOFT),
+    **dict.fromkeys(("cones", "barrier", "lost_load"), ("thing", SOFT)),
 }
 """What the key calls each kind, and its colour."""
 BOX = ((-1, -1), (1, -1), (1, 1), (-1, 1))

@@ -142,19 +142,9 @@ MOST_STEPS = 6000  # of a drive; drives of up to 2 minutes are complete, longer 
 MILLIMETRES, FINE = 3, 5  # digits
 CENTIMETRES = 2  # digits, of outlines that are only drawn on the plan
 DRIVE = {
-    "time": 3,
-    "x": MILLIMETRES,
-    "y": MILLIMETRES,
-    "z": MILLIMETRES,
-    "heading": FINE,
-    "pitch": FINE,
-    "roll": FINE,
-    "speed": MILLIMETRES,
-    "steer": FINE,
-    "throttle": 2,
-    "brake": 2,
-    "s": MILLIMETRES,
-    "t": MILLIMETRES,
+    **dict.fromkeys(("time", "x", "y", "z", "speed", "s", "t"), MILLIMETRES),
+    **dict.fromkeys(("heading", "pitch", "roll", "steer"), FINE),
+    **dict.fromkeys(("throttle", "brake"), 2),
     "outside": 4,
 }
 """Columns of a drive that the page uses, and their decimals."""
