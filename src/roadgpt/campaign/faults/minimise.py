@@ -20,6 +20,8 @@ ROUNDED = (
 )  # fmt: skip
 """The fields that are rounded, each with the unit, metres or degrees; the coarsest first."""
 
+STRAIGHT = {"direction": "straight", "turn_degrees": 0.0, "radius": None, "transition": None}
+
 Change = Callable[[Segment], Segment | None]  # returns the simplified segment, or None to remove the segment
 
 
@@ -151,15 +153,6 @@ def simplified(design: Design, steps: Sequence[Simplification]) -> Design | None
     return design.model_copy(update={"segments": left}) if left else None
 
 
-def _straight(segment: Segment) -> Segment:
-    return Segment(
-        distance=segment.distance,
-        direction="straight",
-        incline=segment.incline,
-        vertical_radius=segment.vertical_radius,
-    )
-
-
 def _changing(field: str, change: Change, unit: float = 0.0) -> Callable[[Design], list[Simplification]]:
     """Returns a function that lists a change of every segment whose ``field`` is not 0, and no multiple of
     ``unit`` where one is given."""
@@ -183,7 +176,7 @@ SIMPLIFIERS: tuple[Callable[[Design], list[Simplification]], ...] = (
     # the last segment first: what comes after the departure matters least
     lambda design: [(index, lambda segment: None) for index in reversed(range(len(design.segments)))],
     _changing("incline", lambda segment: segment.model_copy(update={"incline": 0.0})),
-    _changing("turn_degrees", _straight),
+    _changing("turn_degrees", lambda segment: segment.model_copy(update=STRAIGHT)),
     *(_rounding(field, unit) for field, unit in ROUNDED),
     _changing(
         "incline", lambda segment: segment.model_copy(update={"incline": float(round(segment.incline))}), 1.0

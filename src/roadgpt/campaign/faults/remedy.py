@@ -113,17 +113,10 @@ class Alignment:
 
     def road(self, like: Road) -> Road:
         """Builds the road, with the same start position, start heading and start height as ``like``."""
-        x, y = like.plan.at(np.array(0.0))
-        bends = self.curvature
-        plan = PieceCurve(
-            float(x),
-            float(y),
-            float(like.plan.heading(np.array(0.0))),
-            tuple(
-                Piece(float(length), float(k0), float(k1))
-                for length, k0, k1 in zip(self.steps[1:], bends[:-1], bends[1:], strict=True)
-            ),
-        )
+        x, y = like.plan.at(np.array(0.0)).tolist()
+        columns = (each.tolist() for each in (self.steps[1:], self.curvature[:-1], self.curvature[1:]))
+        pieces = tuple(Piece(*each) for each in zip(*columns, strict=True))
+        plan = PieceCurve(x, y, float(like.plan.heading(np.array(0.0))), pieces)
         height = float(like.elevation.height(np.array(0.0)))
         return Road(plan, GradeProfile(height, tuple(self.stations), tuple(self.grade)))
 

@@ -83,16 +83,11 @@ class Child:
         """Reads one answer."""
         return pickle.load(stream)  # noqa: S301 - from our own process
 
-    def ask_to_end(self) -> None:
-        """Asks a busy process, and those it has started in sessions of their own, to end; does not wait. On
-        Windows, where ``children.kill`` reaches these, nothing is done."""
-        if os.name == "posix" and self.process.poll() is None:
-            with suppress(OSError):
-                self.process.terminate()
-
     def kill(self) -> None:
         """Ends a busy process and those it has started; after a second, by force."""
-        self.ask_to_end()
+        if os.name == "posix" and self.process.poll() is None:  # on Windows, ``children.kill`` reaches all
+            with suppress(OSError):
+                self.process.terminate()  # it ends those in sessions of their own, too
         with suppress(subprocess.TimeoutExpired):
             self.process.wait(GRACE)
         children.kill(self.process)
