@@ -116,6 +116,17 @@ def test_who_is_placed_stands_where_a_drive_of_the_same_seed_begins(tmp_path: Pa
     assert np.interp(time, np.cumsum(waits), speeds) == pytest.approx(np.abs(speed), abs=0.15)  # simplified
 
 
+def test_who_is_not_there_at_first_is_named(tmp_path: Path) -> None:
+    """Nobody has driven: who comes to the junction later is in no file, and is told."""
+    plan = "straight 100 // crossroads straight stop angle=90 // straight 60 && ego v=36; "
+    run = perform(f"{plan}car junction left v=36", 1, setup=Setup(reader="plan", drives=False))
+    said = list[str]()
+    export(run, tmp_path, ["openscenario"], said.append)
+    entities = ET.parse(tmp_path / "road.xosc").getroot().iterfind("Entities/ScenarioObject")
+    assert [each.attrib["name"] for each in entities] == ["Ego"]
+    assert said == ["others left out, who come later: car 1; drive the road to have them"]
+
+
 def test_who_comes_late_and_who_leaves_is_added_and_deleted(written: tuple[Path, Tracks]) -> None:
     root = ET.parse(written[0]).getroot()
     names = [actor.name for actor in written[1].actors]

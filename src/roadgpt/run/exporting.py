@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from roadgpt.traffic import Tracks
 
 NAME = "road"  # of the files in a Run's own folder
+TOLD = 5  # of others that are left out
 
 
 def export(
@@ -36,7 +37,7 @@ def export(
     holds_others = any(getattr(exporter_of(each), "holds_others", False) for each in formats)
     if poses is None and holds_others and run.world.scene.has_others and run.road.has_way:
         try:
-            placed = _placed(run.road, run.world, run.seed)
+            placed = _placed(run, tell)
         except UsageError as error:
             tell(f"others on the road left out, who find no place: {error}")
     written, refused = list[Path](), dict[str, ExportError]()
@@ -63,12 +64,19 @@ def _others(tracks: "Tracks", samples: int | None = None) -> Others:
     return Others(names, kinds, sizes, tracks.time[:samples], tracks.states[:samples])
 
 
-def _placed(road: Road, world: World, seed: int) -> Others | None:
-    """Returns the others as they are when the tested car begins a drive."""
+def _placed(run: Run, tell: Callable[[str], None]) -> Others | None:
+    """Returns the others as they are when the tested car begins a drive; ``tell`` gets who comes later."""
     from roadgpt.traffic.rehearsal import rehearsed  # only scenes that nobody has driven load it
 
-    others = rehearsed(road, world, seed, ahead=CAR.middle)
-    return None if others is None else _others(others.tracks(), 1)
+    assert run.road is not None
+    if (others := rehearsed(run.road, run.world, run.seed, ahead=CAR.middle)) is None:
+        return None
+    tracks = others.tracks()
+    late = [each.name for each, (x, *_) in zip(tracks.actors, tracks.states[0], strict=True) if np.isnan(x)]
+    if late:
+        more = ", ..." * (len(late) > TOLD)
+        tell(f"others left out, who come later: {', '.join(late[:TOLD])}{more}; drive the road to have them")
+    return _others(tracks, 1)
 
 
 def _lights(road: Road, drive: Drive, world: World) -> dict[int, list[tuple[float, dict[RoadEnd, str]]]]:

@@ -183,6 +183,7 @@ def test_strips_need_no_links_to_go_on_inside_a_junction(tmp_path: Path) -> None
 SIGN = '<signal id="1" s="{s}" t="-4" orientation="{way}" dynamic="{changes}" type="{kind}"/>'
 TREE = '<objects><object id="1" type="tree" s="1"/></objects>'
 BROKEN = "<geometry s='0' x='a'/>"
+SHAPELESS = "<geometry s='0' x='0' y='9' hdg='0' length='9'/>"
 FAST, ICE = '<speed sOffset="0" max="1000"/>', '<material sOffset="0" friction="0"/>'
 CLIFF = '<elevationProfile><elevation s="0" a="0" b="46"/></elevationProfile>'
 
@@ -319,6 +320,8 @@ def test_what_a_map_says_of_speed_and_friction_is_that_of_its_lanes(tmp_path: Pa
         ([*crossing(), road(3, (0, 9, 0, 9), TWO, more=TREE)],
          "left out: objects of type tree (road 3)"),
         ([*crossing(), road(3, (0, 9, 0, 9), TWO, plan=BROKEN)], "left out: roads of which"),
+        ([*crossing(), road(3, (0, 9, 0, 9), TWO, plan=SHAPELESS)],
+         "left out: roads of which the geometry has no shape (road 3)"),
         ([*crossing(), road(3, (0, 9, 0, 9), TWO, to("predecessor", "road", 3, "start"))],
          "a second road that continues the same end of a road (road 3)"),
         ([*crossing(), road(3, (0, 9, 0, 9), TWO, more=CLIFF)], "roads of which the road has a grade of 46"),

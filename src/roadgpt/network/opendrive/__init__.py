@@ -7,6 +7,7 @@ roads       reads the roads with all their lanes
 junctions   joins them: continuations, junctions with their signs and lights, roundabouts
 one_road    takes one road of a file by itself, and selects its driven lane"""
 
+import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -67,7 +68,7 @@ def read_map(path: Path | str) -> ImportedMap:
             others.update(unread(node))
             road = read_road(node, remarks)
         except UsageError as error:
-            said = str(error).partition(" at s = ")[0].partition(";")[0]
+            said = re.sub(r" at s = [-+.e\d]+", "", str(error)).partition(";")[0]
             remarks.add(f"left out: roads of which {said}", f"road {node.get('id', '?')[:40]}")
         else:
             roads.extend([] if road is None else [road])
