@@ -3,6 +3,7 @@
 import os
 import re
 import resource
+import sqlite3
 import time
 import zipfile
 from collections.abc import Callable
@@ -18,6 +19,7 @@ from roadgpt.cli import app
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
 from roadgpt.ground.files import attached
+from roadgpt.run import store
 
 SEGMENT = {"distance": 30, "direction": "left", "incline": 2, "turn_degrees": 40}
 
@@ -72,6 +74,41 @@ def test_a_file_that_tells_no_size_is_bounded_as_well() -> None:
 def test_json_that_would_break_the_machine_is_a_value_error(text: str) -> None:
     with pytest.raises(ValueError, match=r"nested|digits|parts"):
         reading.json_of(text)
+
+
+@pytest.mark.parametrize("text", ["a = " + "[" * 5_000 + "]" * 5_000, "a = " + "9" * 5_000, "a = ["])
+def test_toml_that_would_break_the_machine_is_told(
+    text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name, words in (("plan.toml", ["campaign", "plan.toml"]), ("roadgpt.toml", ["config", "show"])):
+        Path(name).write_text(text)
+        done = CliRunner().invoke(app, words, prog_name="roadgpt")
+        assert (done.exit_code, done.stdout) == (2, "")
+        assert re.search(f"{name} (is|are) not TOML", done.stderr)
+        Path(name).unlink()
+
+
+@pytest.mark.timeout(60)
+@pytest.mark.parametrize(
+    "more",
+    [
+        "ALTER TABLE runs RENAME TO old; CREATE VIEW runs AS WITH RECURSIVE each(number) AS (SELECT 1 UNION "
+        "ALL SELECT number + 1 FROM each) SELECT number, NULL AS files FROM each",
+        "CREATE TRIGGER own AFTER INSERT ON runs BEGIN DELETE FROM runs; END",
+        "UPDATE runs SET files = zeroblob(900000000)",
+    ],
+    ids=["a view without end", "a trigger", "a large value"],
+)
+def test_a_record_of_others_runs_nothing_and_fills_no_memory(more: str, tmp_path: Path) -> None:
+    store.keep(tmp_path, 1, tmp_path, "{}")
+    with sqlite3.connect(tmp_path / store.STORE) as db:
+        db.executescript(more)
+    db.close()
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    with pytest.raises(UsageError, match=re.escape(str(tmp_path / store.STORE))):
+        store.numbers(tmp_path), store.files_of(tmp_path, 1)
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 100_000
 
 
 READERS = {

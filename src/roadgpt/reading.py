@@ -6,6 +6,7 @@ the memory. What is no such file raises UsageError, and what the system refuses 
 import json
 import os
 import stat
+import tomllib
 import zipfile
 from collections.abc import Collection, Hashable, Iterable
 from errno import EISDIR
@@ -126,6 +127,16 @@ def json_of(text: str) -> Any:
         return json.loads(text, parse_int=_integer)
     except RecursionError:
         raise ValueError("it is nested too deeply") from None
+
+
+def toml_of(text: str) -> dict[str, Any]:
+    """Returns the data in TOML text. Raises ValueError as ``json_of`` does."""
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        raise
+    except (RecursionError, ValueError):
+        raise ValueError("it is nested too deeply, or has a number of too many digits") from None
 
 
 def arrays_in(

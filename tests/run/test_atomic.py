@@ -1,5 +1,6 @@
 """Whole or not at all."""
 
+import csv
 import json
 import math
 import os
@@ -12,6 +13,7 @@ from roadgpt.errors import UsageError
 from roadgpt.run.atomic import (
     LOCK,
     alone_in,
+    csv_text,
     is_locked,
     json_text,
     sweep,
@@ -134,3 +136,13 @@ def test_lines_are_written_whole_or_not_at_all(tmp_path: Path) -> None:
         write_lines(tmp_path / "a.csv", lines())
     assert (tmp_path / "a.csv").read_bytes() == b"old\n\\udcff\n"
     assert [path.name for path in tmp_path.iterdir()] == ["a.csv"]
+
+
+def test_no_text_of_a_table_is_computed_by_a_spreadsheet() -> None:
+    rows = [["=1+1", "@SUM(A1)", "+cmd|' /C calc'!A0", "-HYPERLINK(B1)"], ["+1.750 m", "-0.5", "-", -2.5]]
+    told = list(csv.reader(csv_text(("a", "=b", "c", "d"), rows).splitlines()))
+    assert told == [
+        ["a", "'=b", "c", "d"],
+        ["'=1+1", "'@SUM(A1)", "'+cmd|' /C calc'!A0", "'-HYPERLINK(B1)"],
+        ["+1.750 m", "-0.5", "-", "-2.5"],
+    ]

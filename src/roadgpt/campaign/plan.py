@@ -4,7 +4,6 @@ Each combination is a cell with a budget of its own; all other values of the pla
 A plan may be a TOML file; an error message names the wrong key and explains how to correct it."""
 
 import math
-import tomllib
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from difflib import get_close_matches
@@ -33,7 +32,7 @@ from roadgpt.chat import ChatSettings, asks_a_model
 from roadgpt.design.room import world_for
 from roadgpt.drive.loading import absolute_spec, driver_from_file
 from roadgpt.errors import UsageError, advice_on
-from roadgpt.reading import read_text
+from roadgpt.reading import read_text, toml_of
 from roadgpt.road import Geometry, World
 from roadgpt.road.world import STEEPEST, Criterion, Lanes, NotNegative, Positive, bank_in
 from roadgpt.run.model import Request, Setup
@@ -273,10 +272,10 @@ class PlanFile(BaseModel):
 def read_plan(path: Path) -> PlanFile:
     """Reads the plan in a file."""
     try:
-        data = tomllib.loads(read_text(path, LARGEST, "a plan of a campaign", "utf-8-sig"))
+        data = toml_of(read_text(path, LARGEST, "a plan of a campaign", "utf-8-sig"))
     except OSError as error:
         raise UsageError(f"{path} cannot be read: {error.strerror}; check the path") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+    except ValueError as error:
         raise UsageError(f"{path} is not TOML: {error}; correct it") from error
     try:
         table = PlanTable.model_validate(data)

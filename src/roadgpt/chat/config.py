@@ -14,7 +14,6 @@ written the file. ``key_for`` has the exact rules."""
 
 import os
 import re
-import tomllib
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
@@ -27,7 +26,7 @@ from pydantic import ValidationError
 from roadgpt.chat.model import ChatSettings, origin_of
 from roadgpt.errors import ChatError, UsageError, advice_on
 from roadgpt.provenance import SERVERS
-from roadgpt.reading import read_text
+from roadgpt.reading import read_text, toml_of
 
 TABLE = "chat"
 FIELDS = tuple(ChatSettings.model_fields)
@@ -290,8 +289,8 @@ def _is_ours(name: str, value: str) -> bool:
 def _toml(path: Path) -> dict[str, Any]:
     text = _read(path)
     try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+        return toml_of(text)
+    except ValueError as error:
         # the library's message may quote the line, which may contain a key
         place = re.search(r"at line \d+", str(error))
         where = place.group() if place else "somewhere"

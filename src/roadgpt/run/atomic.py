@@ -5,6 +5,7 @@ import io
 import json
 import math
 import os
+import re
 import shutil
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
@@ -22,6 +23,7 @@ except ImportError:  # Windows has no such locks; folders are then not locked
 LOCK = "campaign.lock"
 PART = ".part"  # end of the names of unfinished files and folders
 BEFORE = "before-"  # beginning of the names of folders with what was set aside
+FORMULA = re.compile(r"[=@]|[+-].*[(|!]")
 LETTERS = "backslashreplace"  # characters that UTF-8 cannot encode are written as escapes
 
 
@@ -173,9 +175,11 @@ def to_bytes(text: str) -> bytes:
 
 
 def csv_text(head: Iterable[Any], rows: Iterable[Iterable[Any]]) -> str:
-    """Returns a table as CSV with a line of column names; None gives an empty field."""
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows([head, *rows])
+    """Returns a table as CSV with a line of column names; None gives an empty field. Texts of others that a
+    spreadsheet would compute begin with an apostrophe."""
+    text, table = io.StringIO(), [head, *rows]
+    safe = ([f"'{v}" if isinstance(v, str) and FORMULA.match(v) else v for v in row] for row in table)
+    csv.writer(text, lineterminator="\n").writerows(safe)
     return text.getvalue()
 
 

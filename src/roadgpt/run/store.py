@@ -103,10 +103,14 @@ def _opened(campaign: Path, is_written: bool = False) -> Iterator[sqlite3.Connec
 
 def connected(path: Path, mode: str, table: str) -> sqlite3.Connection:
     """Returns a connection to a database that has a table, to read ("ro") or also to write it ("rw"), so that
-    what a killed process left is undone; raises sqlite3.Error."""
+    what a killed process left is undone; raises sqlite3.Error, also if reading the database would run more
+    than our own words, or a value is larger than a file may be."""
     address, db = f"{path.resolve().as_uri()}?mode={mode}", None
     try:
         db = sqlite3.connect(address, PATIENCE, isolation_level=None, uri=True)
+        db.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST)
+        if db.execute("SELECT 1 FROM sqlite_master WHERE type IN ('view', 'trigger')").fetchone():
+            raise sqlite3.DatabaseError("it has views or triggers, which roadgpt does not make")
         db.execute(f"SELECT 1 FROM {table} LIMIT 1").fetchone()  # noqa: S608 - our own words
         return db
     except sqlite3.Error as error:

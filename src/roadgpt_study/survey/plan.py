@@ -1,7 +1,6 @@
 """Reads and writes SURVEY.toml, which contains the texts of a survey and names the roads that people rate."""
 
 import json
-import tomllib
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,7 +11,7 @@ from roadgpt.brief.model import Brief, Clause, Frozen
 from roadgpt.brief.normal import BUMPS, STRAIGHT
 from roadgpt.brief.sentence import WAVY
 from roadgpt.errors import UsageError
-from roadgpt.reading import read_text
+from roadgpt.reading import read_text, toml_of
 from roadgpt.run import Run, read_run, seed_of
 from roadgpt.run.folder import CARD, finished, run_folder
 from roadgpt_study.survey.survey import ABOUT, PAIR_CRITERIA, Question
@@ -106,12 +105,12 @@ def read_plan(path: Path | str) -> SurveyPlan:
     """Returns the contents of a SURVEY.toml."""
     path = Path(path)
     try:
-        data = tomllib.loads(read_text(path, 4_000_000, "the plan of a survey"))
+        data = toml_of(read_text(path, 4_000_000, "the plan of a survey"))
     except OSError as error:
         raise UsageError(
             f"{path} cannot be read ({error.strerror or error}); name the file of a survey"
         ) from error
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         raise UsageError(f"{path} is not valid TOML ({error}); correct it") from error
     try:
         plan = SurveyPlan.model_validate(data)
