@@ -116,8 +116,7 @@ _ADVICE = {
     "string_too_short": "give a text that is not empty",
     "bool_type": "give true or false",
     "too_short": "give at least one",
-    "model_type": "give a table",
-    "dict_type": "give a table",
+    **dict.fromkeys(("model_type", "dict_type"), "give a table"),
 }
 """What the user can do about a value that a model refuses, by pydantic's name for the mistake."""
 

@@ -1,12 +1,10 @@
-"""Finds plug-ins by name: providers, readers, designers, rules, exporters, simulators, movers and
-so on.
+"""Finds plug-ins by name: providers, readers, designers, rules, exporters, simulators, and so on.
 
 Of the kinds ``commands``, ``checks`` (of ``roadgpt doctor``), ``reports`` (of folders of other packages),
 ``tables`` (of folders of runs) and ``settings`` (of simulators), there may be none.
 
 Plug-ins are registered as entry points of the group ``roadgpt.<kind>``. The built-in plug-ins use the same
-mechanism as those of users.
-"""
+mechanism as those of users."""
 
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points

@@ -3,8 +3,7 @@
 A signal raises KeyboardInterrupt, so that waiting ends, files are closed and finished work is kept. However,
 Python drops exceptions that are raised in a ``__del__`` method or in the callback of a weak reference. The
 signal is therefore recorded as well: long computations call ``look`` between their steps, and a
-KeyboardInterrupt that Python reports as dropped is raised again.
-"""
+KeyboardInterrupt that Python reports as dropped is raised again."""
 
 import _thread
 import atexit

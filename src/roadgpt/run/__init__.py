@@ -236,10 +236,8 @@ def _is_staged(run: Run) -> bool:
 
     try:
         begin(run.road, run.world, run.seed)
-    except SceneError:
-        return False
-    except Exception:  # what else goes wrong is told when the road is driven
-        return True
+    except Exception as error:  # what else goes wrong is told when the road is driven
+        return not isinstance(error, SceneError)
     return True
 
 
@@ -254,7 +252,7 @@ def _driven(run: Run, despite_findings: bool = False) -> Run:
     begun, driver = time.perf_counter(), None
     try:
         driver = driver_of(setup.driver)  # a new driver for each road, so that nothing carries over
-        if setup.scenario:
+        if setup.scenario and run.world.scene.actors:
             _refuse_beyond_grip(run.road, run.world, run.seed)
         recording = recording_of(setup)
         tracks = None if recording is None else recording.on(run.road, run.world)
@@ -278,8 +276,6 @@ def _driven(run: Run, despite_findings: bool = False) -> Run:
 
 def _refuse_beyond_grip(road: Road, world: World, seed: int) -> None:
     """Raises SceneError if a scene prescribes accelerations that the road does not give."""
-    if not world.scene.actors:
-        return
     from roadgpt.traffic.rehearsal import rehearsed  # drives without others do not need it
 
     others = rehearsed(road, world, seed)

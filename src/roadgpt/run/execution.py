@@ -130,8 +130,7 @@ def _directions(drive: Drive) -> tuple[NDArray[np.float64], NDArray[np.float64]]
 def _plain(column: NDArray[np.generic]) -> list[object]:
     if column.dtype.kind == "f":
         column = np.round(column.astype(float), 4) + 0.0  # no negative zeros
-    listed: list[object] = column.tolist()
-    return listed
+    return list(column.tolist())
 
 
 BINS = 25
@@ -173,14 +172,11 @@ PER_POINT = 1.0  # m
 
 def test_of(run: Run) -> dict[str, Any]:
     """Returns the content of a Run's test file as a dictionary with the competition's order of fields."""
-    points = np.empty((0, 3))
-    control = np.empty((0, 2))
+    points, control, records = np.empty((0, 3)), np.empty((0, 2)), list[ExecutionRecord]()
     if run.road is not None:
         points = np.round(run.road.centreline(PER_POINT), DECIMALS) + 0.0
         control = np.round(run.road.control_points(), DECIMALS) + 0.0
-    records: list[ExecutionRecord] = []
-    if run.road is not None and run.drive is not None:
-        records = records_of(run.road, run.drive, run.world)
+        records = [] if run.drive is None else records_of(run.road, run.drive, run.world)
     size = run.world.site.map_size
     return {
         "is_valid": run.is_valid,

@@ -90,7 +90,7 @@ def seed_in(folder: Path) -> int | None:
 def read_card(folder: Path) -> Card:
     """Reads the ``campaign.json`` of a campaign's folder."""
     absent = f"{folder} is not empty and was not made by roadgpt run; name another folder"
-    found = read_model(Card, folder / CARD, "the card of a campaign", absent, most=4_000_000)
+    found = read_model(Card, folder / CARD, "the card of a campaign", absent)
     return found.model_copy(update={"request": found.request.came_with(folder / CARD)})
 
 

@@ -103,8 +103,7 @@ def _opened(campaign: Path, is_written: bool = False) -> Iterator[sqlite3.Connec
 
 def connected(path: Path, mode: str, table: str) -> sqlite3.Connection:
     """Returns a connection to a database that has a table, to read ("ro") or also to write it ("rw"), so that
-    what a killed process left is undone; raises sqlite3.Error, also if reading the database would run more
-    than our own words, or a value is larger than a file may be."""
+    what a killed process left is undone; raises sqlite3.Error, also if reading it would run its own words."""
     address, db = f"{path.resolve().as_uri()}?mode={mode}", None
     try:
         db = sqlite3.connect(address, PATIENCE, isolation_level=None, uri=True)
