@@ -158,12 +158,8 @@ def features_of_drive(steering: Sequence[float], distances: Sequence[float]) -> 
     ``oob_distance`` in metres."""
     if len(steering) < FEWEST_RECORDS:
         return {}
-    found = {
-        "STD_SA": float(np.std(steering)),
-        "MEAN_LP": float(np.mean(distances)),
-        "MAX_LP": float(np.max(distances)),
-    }
-    return {name: round(value, 6) for name, value in found.items()}
+    found = {"STD_SA": np.std(steering), "MEAN_LP": np.mean(distances), "MAX_LP": np.max(distances)}
+    return {name: round(float(value), 6) for name, value in found.items()}
 
 
 DECIMALS = 5
