@@ -12,7 +12,6 @@ from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.plan import PlanReader
 from roadgpt.brief.refusal import refused
-from roadgpt.errors import BriefError
 from roadgpt_training.near_duplicates import near_duplicates
 
 DATA = Path(__file__).resolve().parents[1] / "data"
@@ -33,8 +32,6 @@ JUDGED = [
     DATA.parents[1] / "tests" / "design" / "edits.jsonl",
 ]
 
-MEETS_NOT = re.compile("'.*' cannot meet a tested car that goes .* at a .*; change one of them")
-
 
 def rows(path: Path) -> list[dict[str, Any]]:
     """The lines of a file."""
@@ -50,8 +47,7 @@ def letters(row: dict[str, Any]) -> str:
     "path", [*CHANGES, *OF_SCENES, *CONTRASTS, *FREE, *FIELD], ids=lambda path: path.stem
 )
 def test_labels_are_in_the_language_of_plans(path: Path) -> None:
-    """Of each file every fifth one; all together take a minute. A field text may tell of somebody who cannot
-    meet the tested car where that goes; such a plan is refused with both wishes."""
+    """Of each file every fifth one; all together take a minute."""
     for row in rows(path)[::5]:
         assert row.keys() == {"text", "plan", "family", "lang", *(["manner"] if path in FIELD else [])}
         assert row["family"] == path.stem
@@ -61,12 +57,7 @@ def test_labels_are_in_the_language_of_plans(path: Path) -> None:
             line = change_plan(read_change_plan(row["plan"]))
             assert change_plan(read_change_plan(line)) == line
         else:
-            try:
-                brief = PlanReader().read(row["plan"])
-            except BriefError as clash:
-                if path in FIELD and MEETS_NOT.search(str(clash)):
-                    continue
-                raise
+            brief = PlanReader().read(row["plan"])
             assert read_plan(plan(brief)).model_copy(update={"words": row["plan"]}) == brief
 
 

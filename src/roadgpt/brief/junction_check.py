@@ -72,7 +72,7 @@ def faults_of_network(brief: Brief) -> Iterator[str]:
     """Yields how the junctions and lanes of a route, or the map, contradict themselves or cannot be built, as
     sentences that say what to change."""
     for junction in brief.junctions:
-        yield from _faults_of_junction(junction)
+        yield from faults_of_junction(junction)
     backs = [n for n, junction in enumerate(brief.junctions) if junction.take == "back"]
     if backs and (backs[0] < len(brief.junctions) - 1 or not brief.stretches[-1].is_open):
         yield "a route that turns back at a roundabout ends on the road on which it came; leave out the rest"
@@ -83,11 +83,12 @@ def faults_of_network(brief: Brief) -> Iterator[str]:
 
 def check_junction(junction: JunctionClause) -> None:
     """Raises BriefError if a junction cannot meet its requirements; the message says what to change."""
-    if fault := next(_faults_of_junction(junction), ""):
+    if fault := next(faults_of_junction(junction), ""):
         raise BriefError(fault)
 
 
-def _faults_of_junction(junction: JunctionClause) -> Iterator[str]:
+def faults_of_junction(junction: JunctionClause) -> Iterator[str]:
+    """Yields why a junction cannot meet its requirements, as sentences that say what to change."""
     name, possible, take = junction.name, ARMS[junction.kind], junction.take
     arms = overlap(possible, span(junction.arms)) or possible
     if arms.lo > arms.hi:

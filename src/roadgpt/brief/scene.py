@@ -325,6 +325,19 @@ class Role(Frozen):
             raise ValueError(f"{one} cannot brake from {self.speed} to {first.to} km/h")
         return self
 
+    @property
+    def marks(self) -> tuple[Mark, ...]:
+        """The parts of the route, and what others do, that say where it is and when it acts."""
+        return tuple(filter(None, (self.at, *(each.at for each in self.actions))))
+
+    @property
+    def goes(self) -> What:
+        """How it goes through a junction: as its turn says, else straight on, across it."""
+        whats = [each.what for each in self.actions]
+        if self.where == "oncoming" and "turn_off" in whats:
+            return "turn_across"
+        return next((each for each in ("turn_across", "turn_in", "merge") if each in whats), "cross")
+
     def __str__(self) -> str:
         spot = SPOTS[self.where]
         side = f" {spot.before_side} {self.side}{' side' * (self.side == 'opposite')}" if self.side else ""

@@ -54,7 +54,7 @@ def _faults(scene: Scene, brief: Brief) -> Iterator[str]:
         leaves = role.where in ("ahead", "behind") and any(each.what in LEAVES for each in role.actions)
         if leaves and along < 2:
             yield f"'{role}' needs {NEEDS['lane']}"
-        for mark in filter(None, (role.at, *(action.at for action in role.actions))):
+        for mark in role.marks:
             if mark.number > (count := counts.get(mark.of, inf)):
                 yield f"'{role}' needs {mark.of} {mark.number}, and there are {count:g}; change one of them"
     if scene.lane and abs(scene.lane) > along:

@@ -17,7 +17,8 @@ from roadgpt.brief.outline import outline
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.scene import ACROSS, HEAD_ON, LEAVES, MOST_MORE, MOVING, USUAL_SPEEDS, Action, Role, Scene
 from roadgpt.brief.scene_check import check_scene
-from roadgpt.brief.scene_places import comes_to_junction, with_places
+from roadgpt.brief.scene_junctions import comes_to_junction
+from roadgpt.brief.scene_places import with_places
 from roadgpt.brief.words import MOTORWAY_RADIUS
 from roadgpt.errors import BriefError
 

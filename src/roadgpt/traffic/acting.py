@@ -217,7 +217,7 @@ class Act:
         self.cue = self.deeds[0].n if self.deeds else dict[str, float]()
         crosses = self.where == "beside" and not {"cross", "turn_in"}.isdisjoint(whats)
         self.crosses = crosses or self.where in CROSSINGS
-        is_along = self.where in (*ALONG, "parked", "beside") and "turn_across" not in whats
+        is_along = self.where in (*ALONG, "parked", "beside") and role.goes != "turn_across"
         self.is_along = is_along and not self.crosses
         is_against = self.where == "oncoming" or self.first == "wrong_way"
         self.forward = -1 if self.is_along and is_against else 1

@@ -1,16 +1,19 @@
 """Traffic lights that run: which lanes see green, yellow or red at a time.
 
-Opposite arms of a junction have green together, the pairs one after another, each for GREEN_FOR seconds,
-then yellow for YELLOW_FOR and red for everybody for CLEARING. Source: FHWA, Traffic Signal Timing Manual
-(2008), sections 5.3 and 5.4: yellow 3 to 5 s, red clearance 1 to 2 s, and at least 15 s of green for an arm
-of a larger road."""
+Opposite arms of a junction have green together, or one after another where somebody runs a red light who
+comes towards the tested car; the arms or pairs one after another, each for GREEN_FOR seconds, then yellow for
+YELLOW_FOR and red for everybody for CLEARING. Source: FHWA, Traffic Signal Timing Manual (2008), sections
+4.3 (split phasing), 5.3 and 5.4: yellow 3 to 5 s, red clearance 1 to 2 s, and at least 15 s of green for an
+arm of a larger road."""
 
 import math
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from roadgpt.brief.amount import exactly
 from roadgpt.brief.scene import Role
 from roadgpt.geometry import wrap_angle
 from roadgpt.network import network_of
@@ -28,16 +31,17 @@ OPPOSITE = math.radians(135.0)  # arms whose directions differ by more have gree
 class Lights:
     """The lights of a network, which begin at a moment of their cycle that the seed decides."""
 
-    def __init__(self, network: Network, seed: int) -> None:
+    def __init__(self, network: Network, seed: int, actors: Sequence[Role] = ()) -> None:
         rng = np.random.default_rng([seed, len(network.junctions)])
         self.phases: dict[RoadEnd, tuple[int, int, float]] = {}
         """For each arm with lights its phase, the number of phases, and the moment at which the cycle
         begins."""
+        most = 1 if any(_runs(each) and each.side == "opposite" for each in actors) else 2
         for junction in network.junctions:
             groups: list[list[Arm]] = []
             for arm in junction.arms:
                 turned = [abs(wrap_angle(arm.direction - first.direction)) for first, *_ in groups]
-                is_free = [by > OPPOSITE and not pair[1:] for by, pair in zip(turned, groups, strict=True)]
+                is_free = [by > OPPOSITE and len(pair) < most for by, pair in zip(turned, groups, strict=True)]
                 if arm.control == "lights" and any(is_free):
                     groups[is_free.index(True)].append(arm)
                 elif arm.control == "lights":
@@ -78,23 +82,28 @@ class Lights:
 
 
 def comes_from_side(role: Role) -> bool:
-    """Returns whether somebody comes to a junction on a road across that of the tested car."""
-    is_across = any(each.what == "turn_across" for each in role.actions)
-    return role.where == "junction" and role.side != "opposite" and not is_across
+    """Returns whether somebody comes to a junction, and does not only stand there, on a road across that of
+    the tested car."""
+    comes = bool(role.actions) or role.speed != exactly(0)
+    return comes and role.where == "junction" and role.side != "opposite" and role.goes != "turn_across"
+
+
+def _runs(role: Role) -> bool:
+    return any(each.what == "run_light" for each in role.actions)
 
 
 def lights_of(road: "Road", world: "World", seed: int) -> Lights:
     """Returns the lights that run in a drive. If the scene has actors, the tested car has green wherever it
     comes at its first speed, and so has who drives along with it or towards it. If somebody comes from the
-    side who does not run the red light, that one has green, and the tested car red."""
-    lights, actors = Lights(network_of(road, world), seed), world.scene.actors
-    crosses = [each for each in actors if comes_from_side(each)]
-    runs = any(action.what == "run_light" for each in crosses for action in each.actions)
+    side and nobody runs a red light, that one has green, and the tested car red."""
+    actors = world.scene.actors
+    lights = Lights(network_of(road, world), seed, actors)
+    crosses = any(map(comes_from_side, actors)) and not any(map(_runs, actors))
     speed = world.first_speed or world.limits.speed_limit  # who stands at first goes on up to the limit
     for passage in road.passages if actors else ():
         if passage.control == "lights":
             own = lights.phases[passage.arrival]
             others = [each for each in passage.arms if lights.phases.get(each, own) != own]
-            end = others[0] if crosses and others and not runs else passage.arrival
+            end = others[0] if crosses and others else passage.arrival
             lights.show_green(passage.entered, end, passage.start / speed)
     return lights

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from roadgpt.brief.scene import DOINGS, Role, What
+from roadgpt.brief.scene import DOINGS, ON_ITS_WAY, Role, What
 from roadgpt.errors import SceneError
 from roadgpt.geometry import wrap_angle
 from roadgpt.network import Passage, Route, is_route
@@ -37,10 +37,8 @@ AROUND = 30.0  # m of the tested car's path before and behind a junction on whic
 STRAIGHT = math.radians(60.0)  # within which who crosses goes straight on
 TURNS: Mapping[What, tuple[float, float, tuple[bool, ...]]] = {
     "cross": (0.0, math.pi, (False, True)),
-    "run_light": (0.0, math.pi, (False, True)),
-    "run_sign": (0.0, math.pi, (False, True)),
     "turn_across": (OPPOSITE, math.pi, (False, True)),
-    "turn_in": (STRAIGHT_AHEAD, math.pi, (True,)),
+    "turn_in": (0.0, math.pi, (True,)),
     "merge": (0.0, OPPOSITE, (True,)),
 }
 """By what angles somebody turns in a junction, the least and the most, and whether into the tested car's
@@ -51,20 +49,21 @@ def way_of(role: Role, near: float, road: "Road", world: "World", away: float | 
     """Returns the way of somebody who crosses the tested car's path, comes to it along other lanes, or turns
     off. ``meets`` is where, at station ``near`` of the tested car's road or later. Who crosses is ``away``
     metres from the path at first; None: beside the lanes. Raises SceneError if the road has no such place."""
-    turns_off = any(each.what == "turn_off" for each in role.actions)
+    turns_off = role.where != "oncoming" and any(each.what == "turn_off" for each in role.actions)
     if not turns_off and role.where not in (*WAYS, "oncoming"):
         return _across(role, near, road, world, away)
     place = role.where if role.where in WAYS else "junction"
     find, wanted = WAYS["turn_off" if turns_off and place != "roundabout" else place]
     passages, mark = road.passages, role.at
     if mark and mark.of == "junction":
-        passages = passages[mark.number - 1 if mark.number > 0 else mark.number :][:1]
+        at = mark.number - 1 if mark.number > 0 else len(passages) + mark.number
+        passages = passages[at + (mark.word == "after") :][:1]
     if is_route(road):
         for way in find(_Around(role, road, lanes_of(road.network), Way.along(road, world), passages)):
             if way is not None and way.meets is not None and way.meets[1] >= near:
                 return way
     side = f"the {role.side}{' side' * (role.side == 'opposite')}" if role.side else "another side"
-    does = DOINGS[_turn(role)].said
+    does = DOINGS[next((each.what for each in role.actions if each.what in ON_ITS_WAY), role.goes)].said
     lacks = wanted.format(near=near, side=side, does=does, where=role.where)
     raise SceneError(f"the route passes no {lacks}; change one of them")
 
@@ -118,10 +117,6 @@ def _crosswalk(near: float, road: "Road", is_open: bool) -> float:
             if end in network.crossed and s >= near:
                 return float(s)
     raise SceneError(f"the route passes no crosswalk after {near:.0f} m; write crosswalk behind a junction")
-
-
-def _turn(role: Role) -> What:
-    return next((each.what for each in role.actions if each.what in TURNS), "cross")
 
 
 class _Around(NamedTuple):
@@ -201,43 +196,60 @@ class _Around(NamedTuple):
         places = sorted(zip(own[is_there].tolist(), s[is_there].tolist(), strict=True))
         return replace(way, meets=places[0]) if places else None
 
+    def passed(self, legs: Sequence[Leg], passage: Passage) -> Way:
+        """Returns the way along lanes that meet the tested car's path nowhere, as if they met in the middle
+        of the junction."""
+        way, own = self.whole(legs)
+        own += sum(self.lanes[each].length / (1 if each == legs[0] else 2) for each in legs[:-1])
+        return replace(way, meets=(own, (passage.start + passage.end) / 2))
+
 
 def _through_junction(around: _Around) -> Iterator[Way | None]:
-    """Yields the ways from an arm of a junction through it: straight across the tested car's path or, for who
-    turns, across it or into it."""
+    """Yields the ways from an arm of a junction through it: straight on, where that is possible, or for who
+    turns across the tested car's path or into it; and at last those on which somebody passes it."""
     role, route, network = around.role, around.route, around.route.network
-    what = _turn(role)
     usual = ["left", "right", "opposite"] if network.left_hand else ["right", "left", "opposite"]
-    sides = [str(role.side)] if role.side else usual[::-1] if what == "turn_across" else usual
-    if role.where == "oncoming":
-        sides = ["opposite"]
-    least, most, kinds = TURNS[what]
-    phases = Lights(network, 0).phases
+    sides = [str(role.side)] if role.side else usual[::-1] if role.goes == "turn_across" else usual
+    least, most, kinds = TURNS[role.goes]
+    whats = {each.what for each in role.actions}
+    turns_to = next((each.side for each in role.actions if each.what == "turn_off"), None)
+    phases = Lights(network, 0, [role]).phases
     directions = {arm.end: arm.direction for each in network.junctions for arm in each.arms}
+    passing = list[tuple[Passage, tuple[Leg, ...]]]()
     for passage in around.passages:
-        arms, own = list[tuple[int, float, list[Leg]]](), phases.get(passage.arrival)
-        for end in passage.arms[1:]:  # the first one is the road of arrival
-            turn = float(wrap_angle(directions[end] - directions[passage.arrival] - math.pi))
-            side = "opposite" if abs(turn) <= OPPOSITE else "left" if turn > 0 else "right"
+        arms, own = list[tuple[bool, int, float, list[Leg]]](), phases.get(passage.arrival)
+        came = directions[passage.arrival] + math.pi
+        ahead = {end: float(wrap_angle(directions[end] - came)) for end in passage.arms[1:]}
+        straightest = min(ahead, key=lambda end: abs(ahead[end]))
+        for end, turn in ahead.items():
+            side = "left" if turn > 0 else "right"
+            if abs(turn) <= OPPOSITE or (end == straightest and len(ahead) > 3):  # in a star
+                side = "opposite"
+            is_there = end == straightest if role.where == "oncoming" else side in sides
             is_across = end in phases and phases[end] != own
-            is_fit = end not in phases or is_across == comes_from_side(role)
-            if side in sides and is_fit and (is_across or what != "run_light"):
+            if is_there and (is_across or "run_light" not in whats):
+                is_wrong = end in phases and is_across != comes_from_side(role)
                 lanes = [Leg(end.road, each) for each in network.lanes_into(end)]
-                arms.append((sides.index(side), abs(turn), lanes))
-        for _, _, lanes in sorted(arms):
+                arms.append((is_wrong, [*sides, side].index(side), abs(turn), lanes))
+        for *_, lanes in sorted(arms):
             turns = [each for lane in lanes for each in around.turns(passage, lane)]
+            if role.goes == "cross":
+                turns = [each for each in turns if abs(each[0]) <= STRAIGHT] or turns
 
             def best(each: tuple[float, tuple[Leg, ...]]) -> tuple[Any, ...]:
-                """Straight on, else across the tested car's path, else into it."""
+                """First where it has to give way, if it fails to; across the path, else into it."""
                 by, legs = each
-                return abs(by) > STRAIGHT and legs[-1] in route.legs, abs(by), legs
+                yields = not {*route.legs}.isdisjoint(around.lanes.gives_way_to(legs[1]))
+                is_into = abs(by) > STRAIGHT and legs[-1] in route.legs
+                return "run_sign" in whats and not yields, is_into, abs(by), legs
 
             for by, legs in sorted(turns, key=best):
                 is_fit = least <= abs(by) <= most and (legs[-1] in route.legs) in kinds
-                if what == "run_sign":
-                    is_fit &= bool({*around.lanes.gives_way_to(legs[1])} & {*route.legs})
-                if is_fit:
+                if is_fit and (not turns_to or (by < 0) == (turns_to == "left")):
                     yield around.met(legs, passage)
+                    passing.append((passage, legs))
+    for passage, legs in passing:
+        yield around.passed(legs, passage)
 
 
 def _on_ring(around: _Around) -> Iterator[Way | None]:
@@ -294,11 +306,13 @@ def _turning_off(around: _Around) -> Iterator[Way | None]:
     last."""
     role, path = around.role, around.path
     side = next(each.side for each in role.actions if each.what == "turn_off")
-    for passage in around.passages if role.where in ("ahead", "behind") else ():
+    for passage in around.passages:
         turns = sorted(around.turns(passage, around.before(passage)), key=lambda each: -abs(each[0]))
         for by, legs in turns:
-            is_there = not side or (abs(by) > STRAIGHT_AHEAD and (by > 0) == (side == "left"))
-            if legs[-1].road != passage.departure.road and is_there:
+            is_there = legs[-1].road != passage.departure.road
+            if side:  # there the tested car may go, too
+                is_there = abs(by) > STRAIGHT_AHEAD and (by > 0) == (side == "left")
+            if is_there:
                 kept, (rest, _) = around.s < passage.start - SPACING / 2, around.whole(legs[1:])
                 way = Way.through(np.vstack([path.points[kept, :3], rest.points[:, :3]]))
                 behind = way.stations[kept.sum() :]
