@@ -1,6 +1,7 @@
 """Scenes in plans: what is read, written, said and refused, and what the catalogues of others need."""
 
 import re
+from importlib.resources import files
 from pathlib import Path
 from typing import get_args
 
@@ -148,6 +149,39 @@ def test_the_page_has_every_word_and_every_bound() -> None:
     assert starts == {
         what: NUMBERS[each.numbers[0]].key if each.numbers else "" for what, each in DOINGS.items()
     }
+
+
+def test_the_grammar_and_the_prompt_give_a_side_to_whom_the_language_gives_one() -> None:
+    def takes(part: str) -> bool:
+        try:
+            return bool(read_scene(part).actors)
+        except BriefError:
+            return False
+
+    starts = {what: doing.starts[0] for what, doing in DOINGS.items()}
+    sided = {what for what in DOINGS if takes(f"car {starts[what]}: {what} left")}
+    beside = {where for where in SPOTS if takes(f"car {where} left")}
+    page = PAGE.read_text(encoding="utf-8")
+    line = re.search(r"^ +WHAT +=(.*)\|", page, re.MULTILINE)
+    assert line is not None
+    assert {*re.findall(r"\w+_?\w+", line[1])} == {*sided, "left", "right"}
+    wheres = re.search(r"^ +WHERE +=(.*\n.*)\n", page, re.MULTILINE)
+    assert wheres is not None
+    (lone, opposite), more = re.findall(r"(.*)\| (\w+) \[", wheres[1])[0], wheres[1].split("\n")[1]
+    assert {opposite, *re.findall(r"[a-z]+", more)} - {"left", "right"} == beside
+    assert {*re.findall(r"[a-z]+", lone)} == {*SPOTS} - beside
+    rules = files("roadgpt.brief.readers").joinpath("chat_rules.txt").read_text(encoding="utf-8")
+    only = re.search(r"left or right \(only ([^)]*)\)", rules)
+    assert only is not None
+    assert {*only[1].split(", ")} == sided
+
+
+def test_who_leaves_the_next_lane_away_from_the_tested_car_gets_a_lane_to_go_to() -> None:
+    said = read_scene("car lane left: change_lane left")
+    assert said.lanes_needed(left_hand=False) == 3
+    assert read_scene("car lane left: change_lane right").lanes_needed(left_hand=False) == 2
+    with pytest.raises(BriefError, match="needs 3 lanes"):
+        read("| lanes=2 && car lane left: change_lane left", "plan", map_size=None)
 
 
 def test_rain_wets_the_road_and_a_surface_goes_before_it() -> None:

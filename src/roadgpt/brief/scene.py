@@ -487,9 +487,13 @@ class Scene(Frozen):
         """How many lanes of its direction it needs to the left and to the right of the tested car's."""
         found = {"left": 0, "right": 0}
         for role in self.actors:
-            leave = [each for each in role.actions if each.what in LEAVES]
-            needs = [(LANES_AWAY.get(role.where, 0), role.side)]
-            needs += [(1, each.side) for each in leave if role.where in ("ahead", "behind")]
+            away = LANES_AWAY.get(role.where, 0)
+            leave = [each.side for each in role.actions if each.what in LEAVES]
+            needs = [(away, role.side)]
+            if role.where in ("ahead", "behind"):
+                needs += [(1, side) for side in leave]
+            elif away and role.side in leave:  # farther away
+                needs += [(away + 1, role.side)]
             for count, side in needs:
                 side = "right" if side == "right" else "left"
                 found[side] = max(found[side], count)
