@@ -41,7 +41,9 @@ class Lights:
             groups: list[list[Arm]] = []
             for arm in junction.arms:
                 turned = [abs(wrap_angle(arm.direction - first.direction)) for first, *_ in groups]
-                is_free = [by > OPPOSITE and len(pair) < most for by, pair in zip(turned, groups, strict=True)]
+                is_free = [
+                    by > OPPOSITE and len(pair) < most for by, pair in zip(turned, groups, strict=True)
+                ]
                 if arm.control == "lights" and any(is_free):
                     groups[is_free.index(True)].append(arm)
                 elif arm.control == "lights":
