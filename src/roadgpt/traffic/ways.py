@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from roadgpt.brief.junctions import RAMPS
 from roadgpt.brief.scene import DOINGS, ON_ITS_WAY, Role, What
 from roadgpt.errors import SceneError
 from roadgpt.geometry import wrap_angle
@@ -233,7 +234,8 @@ def _through_junction(around: _Around) -> Iterator[Way | None]:
                 arms.append((is_wrong, [*sides, side].index(side), abs(turn), lanes))
         for *_, lanes in sorted(arms):
             turns = [each for lane in lanes for each in around.turns(passage, lane)]
-            if role.goes == "cross":
+            is_plain = passage.entered.id not in network.roundabout_of and passage.entered.kind not in RAMPS
+            if role.goes == "cross" and is_plain:
                 turns = [each for each in turns if abs(each[0]) <= STRAIGHT] or turns
 
             def best(each: tuple[float, tuple[Leg, ...]]) -> tuple[Any, ...]:
@@ -247,7 +249,7 @@ def _through_junction(around: _Around) -> Iterator[Way | None]:
                 is_fit = least <= abs(by) <= most and (legs[-1] in route.legs) in kinds
                 if is_fit and (not turns_to or (by < 0) == (turns_to == "left")):
                     yield around.met(legs, passage)
-                    passing.append((passage, legs))
+                    passing += [(passage, legs)] * is_plain
     for passage, legs in passing:
         yield around.passed(legs, passage)
 
