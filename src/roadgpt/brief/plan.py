@@ -607,13 +607,9 @@ def scene_fields(text: str) -> dict[str, object]:
             raise BriefError(
                 f"a scene has no '{part[:40]}'; its parts, divided by ;, begin with one of {', '.join(known)}"
             )
-    several = {
-        "actors": (*actors,),
-        "slippery": (*patches,),
-        "landscape": (*lands,),
-        "parked": (*sorted(rows),),
-    }
-    return fields | {name: each for name, each in several.items() if each}
+    of_all: tuple[list[Any], ...] = (actors, patches, lands, sorted(rows))
+    several = zip(("actors", "slippery", "landscape", "parked"), of_all, strict=True)
+    return fields | {name: tuple(each) for name, each in several if each}
 
 
 def _read_role(text: str) -> Role:

@@ -52,13 +52,19 @@ def refused(line: str) -> BriefError:
     return BriefError(f"no such road can be built: {said}; leave that out")
 
 
-class TooMuchError(BriefError):
-    """Raised if a description asks for more than the usual map of 250 m can hold; ``brief.read`` checks the
-    requirements in ``brief`` against the actual map, which may be larger."""
-
+class _TooLargeError(BriefError):
     def __init__(self, sentence: str, brief: Brief) -> None:
         super().__init__(sentence)
         self.brief = brief
+
+
+class NoRoomError(_TooLargeError):
+    """Raised if the map is too small for the requirements, which are in ``brief``."""
+
+
+class TooMuchError(_TooLargeError):
+    """Raised if a description asks for more than the usual map of 250 m can hold; ``brief.read`` checks the
+    requirements in ``brief`` against the actual map, which may be larger."""
 
 
 class AnotherRoadError(BriefError):
@@ -75,11 +81,3 @@ class AnotherRoadError(BriefError):
     def __init__(self, offer: str, plan: str, brief: Brief) -> None:
         super().__init__(f'{offer}: --plan "{plan}"')
         self.offer, self.plan, self.brief = offer, plan, brief
-
-
-class NoRoomError(BriefError):
-    """Raised if the map is too small for the requirements, which are in ``brief``."""
-
-    def __init__(self, sentence: str, brief: Brief) -> None:
-        super().__init__(sentence)
-        self.brief = brief

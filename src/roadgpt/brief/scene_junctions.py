@@ -56,7 +56,9 @@ def _signs(place: JunctionClause, roles: Sequence[Role]) -> dict[str, Any]:
             continue
         control = control or ("lights" if runs else "priority")
         if (control == "lights") != runs:
-            raise BriefError(f"'{role}' cannot be at a junction with {SIGNS[control]}; change one of them")
+            needs = "lights" if runs else "a sign, or none"
+            has = f"the junction has {SIGNS[control]}"
+            raise BriefError(f"'{role}' needs {needs}, and {has}; change one of them")
         all_way |= control in ("stop", "yield")
     return {"control": control, "all_way": all_way}
 

@@ -194,10 +194,7 @@ def _share(share: float, least: float = 0.0) -> Tolerance:
 
 
 _METRES = _share(LENGTH_SLACK)
-_PERCENT: Tolerance = (
-    lambda _: PERCENT_SLACK,
-    f"{PERCENT_SLACK:g} percentage point",
-)
+_PERCENT: Tolerance = (lambda _: PERCENT_SLACK, f"{PERCENT_SLACK:g} percentage point")
 _DEGREES = (degrees_slack, "10 %, at most 7 degrees, or at most 10 from 90 degrees on")
 _COUNT: Tolerance = (lambda _: 0.0, "none")
 

@@ -84,10 +84,9 @@ class Lights:
 
 
 def comes_from_side(role: Role) -> bool:
-    """Returns whether somebody comes to a junction, and does not only stand there, on a road across that of
-    the tested car."""
-    comes = bool(role.actions) or role.speed != exactly(0)
-    return comes and role.where == "junction" and role.side != "opposite" and role.goes != "turn_across"
+    """Returns whether somebody, who does not only stand, comes to a junction on a road from the side."""
+    is_there = role.where == "junction" and role.side != "opposite" and role.goes != "turn_across"
+    return is_there and (bool(role.actions) or role.speed != exactly(0))
 
 
 def _runs(role: Role) -> bool:

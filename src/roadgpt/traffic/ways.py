@@ -212,13 +212,13 @@ def _through_junction(around: _Around) -> Iterator[Way | None]:
     usual = ["left", "right", "opposite"] if network.left_hand else ["right", "left", "opposite"]
     sides = [str(role.side)] if role.side else usual[::-1] if role.goes == "turn_across" else usual
     least, most, kinds = TURNS[role.goes]
-    whats = {each.what for each in role.actions}
-    turns_to = next((each.side for each in role.actions if each.what == "turn_off"), None)
+    whats = {each.what: each.side for each in role.actions}
     phases = Lights(network, 0, [role]).phases
     directions = {arm.end: arm.direction for each in network.junctions for arm in each.arms}
-    passing = list[tuple[Passage, tuple[Leg, ...]]]()
+    passing = list[Way]()
     for passage in around.passages:
-        arms, own = list[tuple[bool, int, float, list[Leg]]](), phases.get(passage.arrival)
+        found, own = list[tuple[Any, ...]](), phases.get(passage.arrival)
+        is_plain = passage.entered.id not in network.roundabout_of and passage.entered.kind not in RAMPS
         came = directions[passage.arrival] + math.pi
         ahead = {end: float(wrap_angle(directions[end] - came)) for end in passage.arms[1:]}
         straightest = min(ahead, key=lambda end: abs(ahead[end]))
@@ -228,30 +228,23 @@ def _through_junction(around: _Around) -> Iterator[Way | None]:
                 side = "opposite"
             is_there = end == straightest if role.where == "oncoming" else side in sides
             is_across = end in phases and phases[end] != own
-            if is_there and (is_across or "run_light" not in whats):
-                is_wrong = end in phases and is_across != comes_from_side(role)
-                lanes = [Leg(end.road, each) for each in network.lanes_into(end)]
-                arms.append((is_wrong, [*sides, side].index(side), abs(turn), lanes))
-        for *_, lanes in sorted(arms):
+            if not is_there or ("run_light" in whats and not is_across):
+                continue
+            lanes = [Leg(end.road, each) for each in network.lanes_into(end)]
             turns = [each for lane in lanes for each in around.turns(passage, lane)]
-            is_plain = passage.entered.id not in network.roundabout_of and passage.entered.kind not in RAMPS
             if role.goes == "cross" and is_plain:
                 turns = [each for each in turns if abs(each[0]) <= STRAIGHT] or turns
-
-            def best(each: tuple[float, tuple[Leg, ...]]) -> tuple[Any, ...]:
-                """First where it has to give way, if it fails to; across the path, else into it."""
-                by, legs = each
+            is_wrong = end in phases and is_across != comes_from_side(role)
+            for by, legs in turns:
                 yields = not {*route.legs}.isdisjoint(around.lanes.gives_way_to(legs[1]))
-                is_into = abs(by) > STRAIGHT and legs[-1] in route.legs
-                return "run_sign" in whats and not yields, is_into, abs(by), legs
-
-            for by, legs in sorted(turns, key=best):
                 is_fit = least <= abs(by) <= most and (legs[-1] in route.legs) in kinds
-                if is_fit and (not turns_to or (by < 0) == (turns_to == "left")):
-                    yield around.met(legs, passage)
-                    passing += [(passage, legs)] * is_plain
-    for passage, legs in passing:
-        yield around.passed(legs, passage)
+                if is_fit and whats.get("turn_off") in (None, "left" if by < 0 else "right"):
+                    best = is_wrong, "run_sign" in whats and not yields, [*sides, side].index(side), abs(turn)
+                    found.append((*best, abs(by) > STRAIGHT and legs[-1] in route.legs, abs(by), legs))
+        for *_, legs in sorted(found):
+            yield around.met(legs, passage)
+            passing += [around.passed(legs, passage)] * is_plain
+    yield from passing
 
 
 def _on_ring(around: _Around) -> Iterator[Way | None]:

@@ -10,6 +10,7 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import cache
 
+from roadgpt.brief.beside import slipperiest
 from roadgpt.brief.change.clashes import refuse_clashes
 from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.change.request import EditRequest
@@ -90,8 +91,9 @@ def _surface_in(words: str) -> tuple[str, tuple[str, ...]]:
     found = {name: tuple(pattern_of(name, "surfaces", re.I).findall(words)) for name in SURFACES}
     named = [name for name, those in found.items() if those]
     is_denied = pattern_of("denials", flags=re.I).search(words)
-    slipperiest = min(named, key=lambda name: SURFACES[name].friction, default="")
-    return "" if is_denied else slipperiest, tuple(word for name in named for word in found[name])
+    return "" if is_denied else slipperiest(named) or "", tuple(
+        word for name in named for word in found[name]
+    )
 
 
 def other_readings(request: EditRequest) -> Iterator[EditRequest]:

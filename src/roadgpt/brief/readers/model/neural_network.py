@@ -11,13 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from roadgpt.brief.plan import SCENE
-from roadgpt.brief.readers.model.grammar import (
-    END,
-    Evidence,
-    PlanAutomaton,
-    change_request,
-    description,
-)
+from roadgpt.brief.readers.model.grammar import END, Evidence, PlanAutomaton, change_request, description
 from roadgpt.brief.readers.model.onnx_runtime import onnxruntime
 from roadgpt.brief.readers.model.scene_grammar import any_change, whole
 from roadgpt.brief.readers.model.slots import SlottedText
@@ -201,12 +195,7 @@ class NeuralNetwork:
             writer.push(word)
         return np.stack(logs, axis=1), np.stack(leads, axis=1)
 
-    def write(
-        self,
-        across: Array,
-        text: SlottedText,
-        refuse_from: float,
-    ) -> tuple[WrittenPlan, ...]:
+    def write(self, across: Array, text: SlottedText, refuse_from: float) -> tuple[WrittenPlan, ...]:
         """Returns the likeliest plans for a description, best first, from a beam search; for ``refuse_from``
         see ``scored_plans``."""
         drafts, done = [WrittenPlan.of(text, self.has_scenes)], list[WrittenPlan]()

@@ -177,17 +177,12 @@ def without_untold(brief: Brief, words: str) -> Brief:
     """Returns a Brief without fog, a wet road, night, a low sun and traffic on the left if no word tells of
     them. Names of towns tell of traffic on the left, unless other words are American."""
     said, scene = unaccented(without_asides(words, SIGHT)), brief.scene
-    changes = dict[str, Any]()
-    if scene.fog and not TOLD["fog"].search(said):
-        changes["fog"] = None
-    if scene.surface == "wet" and not TOLD["wet"].search(said):
-        changes["surface"] = None
-    if scene.light and not TOLD[scene.light].search(said):
-        changes["light"] = None
-    is_abroad = TOLD["left_hand_towns"].search(said) and not TOLD["american"].search(said)
-    is_left = brief.left_hand and (is_abroad or TOLD["left_hand"].search(said) or says_left_hand(words))
-    left_hand = {"left_hand": bool(is_left), "scene": scene.model_copy(update=changes)}
-    return brief.model_copy(update=left_hand)
+    told = {name for name, pattern in TOLD.items() if pattern.search(said)}
+    needs = {"fog": scene.fog and "fog", "surface": scene.surface == "wet" and "wet", "light": scene.light}
+    changes = {field: None for field, name in needs.items() if name and name not in told}
+    is_left = "left_hand" in told or ("left_hand_towns" in told and "american" not in told)
+    left_hand = brief.left_hand and (is_left or says_left_hand(words))
+    return brief.model_copy(update={"left_hand": left_hand, "scene": scene.model_copy(update=changes)})
 
 
 def _each_once(lands: Iterable[Land]) -> tuple[Land, ...]:

@@ -1,6 +1,7 @@
 """Numbers that are not of the road or its traffic: years, ages, clock times, dates, numbers of routes and of
 documents. The network reads a word such as "year" in the place of each, so that none can become a measure."""
 
+import re
 from collections.abc import Sequence
 
 from roadgpt.brief.languages import pattern_of, word_set
@@ -8,6 +9,7 @@ from roadgpt.brief.languages import pattern_of, word_set
 PERSON = pattern_of("person")
 """The end of a word for a person, whose age follows in brackets."""
 AGES, MONTHS, ROUTES, DAY = (word_set(name) for name in ("ages", "months", "numbered_routes", "time_of_day"))
+DATE = re.compile(r"(?=.*\d{4})\d{1,4}([-/.])\d{1,4}\1\d{1,4}")
 YEARS = range(1950, 2036)
 ROUND_YEAR = 2000  # more often metres than a year
 PREFIXES = (["i"], ["us"], ["sr"], ["cr"])
@@ -62,13 +64,5 @@ def _is_clock(tokens: Sequence[str], at: int) -> bool:
 
 def _is_of_date(tokens: Sequence[str], at: int) -> bool:
     """Returns whether a number is one of three of a date such as "12/05/2012" or "2012-05-12"."""
-    for first in (at, at - 2, at - 4):
-        date = tokens[first : first + 5] if first >= 0 else []
-        if (
-            len(date) == 5
-            and date[1] == date[3]
-            and date[1] in "/-."
-            and all(each.isdecimal() and len(each) <= 4 for each in date[::2])
-        ):
-            return any(len(each) == 4 for each in date[::2])
-    return False
+    dates = ("".join(tokens[first : first + 5]) for first in (at, at - 2, at - 4) if first >= 0)
+    return any(map(DATE.fullmatch, dates))
