@@ -52,6 +52,7 @@ SEVERAL = {"bus": "buses", "child": "children", "cones": "cones"}
 """The plurals that are not made with an s."""
 ALONG = ("ahead", "behind", "lane", "far", "oncoming")
 LEAVES = ("cut_out", "change_lane")
+ACCELERATES = {"decel", "accel", "lateral"}  # numbers with which a scene prescribes an acceleration
 HEAD_ON: tuple[What, ...] = ("drift", "wrong_way", "overtake")
 """What leads who comes towards the tested car into its lane."""
 ON_ITS_WAY: tuple[What, ...] = ("merge", "turn_in", "turn_across", "cross", "run_light", "run_sign")

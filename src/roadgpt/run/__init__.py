@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 from roadgpt import plugins
 from roadgpt.brief import NoRoomError, read
 from roadgpt.brief.model import Brief
+from roadgpt.brief.scene import ACCELERATES, LEAVES
 from roadgpt.brief.scene_fit import fitted
 from roadgpt.chat import Meter, ReplyError, counting
 from roadgpt.check import inspect, rules_of
@@ -276,6 +277,9 @@ def _driven(run: Run, despite_findings: bool = False) -> Run:
 
 def _refuse_beyond_grip(road: Road, world: World, seed: int) -> None:
     """Raises SceneError if a scene prescribes accelerations that the road does not give."""
+    actions = [action for actor in world.scene.actors for action in actor.actions]
+    if not any(each.what in LEAVES or ACCELERATES & each.model_fields_set for each in actions):
+        return
     from roadgpt.traffic.rehearsal import rehearsed  # drives without others do not need it
 
     others = rehearsed(road, world, seed)

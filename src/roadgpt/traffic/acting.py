@@ -14,6 +14,7 @@ import numpy as np
 
 from roadgpt.brief.junctions import Side
 from roadgpt.brief.scene import (
+    ACCELERATES,
     ALONG,
     CUES,
     DOINGS,
@@ -889,7 +890,7 @@ class Act:
                 mu = self.world.friction_at(self.path.to_road(self.s))
             if abs(falls) > STEEP:
                 where += f" on a grade of {100 * abs(math.tan(math.asin(falls / GRAVITY))):.0f} %"
-            given = not {"decel", "accel", "lateral"}.isdisjoint(deed.n) and bool(most < GRIP)
+            given = not ACCELERATES.isdisjoint(deed.n) and bool(most < GRIP)
             said = f" with at most {most:.1f} m/s2, not {asked:.1f}{where}: friction is {mu:g}"
             self.limited.setdefault(self.deeds.index(deed), (said, given))
 
