@@ -135,7 +135,8 @@ def in_sight(
                     break
         if is_seen:
             order[kept] = k
-            seen[kept] = seen[place]
+            for n in range(seen.shape[1]):
+                seen[kept, n] = seen[place, n]
             kept += 1
     return kept
 
@@ -153,9 +154,10 @@ def look(
     ``row`` is the state of the car in the order of COLUMNS, and ``box`` has the length and width of its box,
     the metres from its centre of gravity forward to the middle of the box, and upward from the ground;
     ``road`` has points every SPACING metres, or none if it is flat."""
-    states[:] = before
-    if share > 0.0:
-        states[:] = (1.0 - share) * before + share * after
+    for k in range(len(states)):
+        for n in range(states.shape[1]):  # whole rows would take seconds to compile
+            past, coming = before[k, n], after[k, n]
+            states[k, n] = (1.0 - share) * past + share * coming if share > 0.0 else past
     length, width, ahead, height = box
     x, y = row[X] + ahead * math.cos(row[HEADING]), row[Y] + ahead * math.sin(row[HEADING])
     car = np.array([x, y, row[Z] - height, row[HEADING], length, width])

@@ -136,7 +136,8 @@ def buckets(
             counts = np.cumsum(counts).astype(np.int32)
             members = np.empty(counts[-1], np.int32)
     starts = np.zeros_like(counts)
-    starts[1:] = counts[:-1]
+    for n in range(1, len(counts)):
+        starts[n] = counts[n - 1]
     return starts, members
 
 

@@ -113,8 +113,8 @@ class Way:
     def locate(self, x: FloatArray, y: FloatArray) -> tuple[FloatArray, ...]:
         """Returns the stations of places, how far they are to the left, and the heading there, as seen from
         the nearest points of the way."""
-        away = np.hypot(self.points[:, :1] - x, self.points[:, 1:2] - y)
-        nearest = away.argmin(axis=0)
+        dx, dy = (n - np.reshape(to, (-1, 1)) for n, to in zip(self.points.T, (x, y), strict=False))
+        nearest = (dx**2 + dy**2).argmin(axis=1)
         heading = self.points[nearest, 3]
         dx, dy = x - self.points[nearest, 0], y - self.points[nearest, 1]
         c, s = np.cos(heading), np.sin(heading)
