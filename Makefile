@@ -58,6 +58,8 @@ demo: $(VENV)/.installed
 
 # The simulator and the camera are compiled once, beside the check of types; each worker and process would compile anew.
 test: export PYTHONDONTWRITEBYTECODE =
+# More threads of BLAS than one, in three workers on two cores, spend their time waiting for each other.
+test: export OPENBLAS_NUM_THREADS = 1
 test: $(VENV)/.installed-test judges/.installed judges/.browser
 	$(BIN)/python -m ruff check .
 	$(BIN)/python -m ruff format --check .

@@ -1,6 +1,9 @@
 """What the planner reaches: valid roads that keep their words, no two alike, and how long one takes.
 
-python benchmarks/bench_design.py [ROADS]"""
+python benchmarks/bench_design.py [ROADS [FOLDER]]
+
+FOLDER holds what judges from outside: ``referee.py``, which says whether a road keeps a truth, and prompts
+with their truths in ``prompts/dev.jsonl``. Without it, nothing is told of them."""
 
 import importlib.util
 import json
@@ -23,7 +26,6 @@ from roadgpt.check.measures import measure
 from roadgpt.design import draft
 from roadgpt.road import Design, Road, World, build
 
-SHARED = Path(__file__).resolve().parents[2] / "shared"
 EVALUATION = {  # the thesis' prompts, and what an outside referee asks of their roads
     "a road": {"turns": [1, None]},
     "an uphill road with 3 turns": {"turns": 3, "grade": "up"},
@@ -39,6 +41,7 @@ EVALUATION = {  # the thesis' prompts, and what an outside referee asks of their
 }
 WORLD = World()
 ROADS = int(sys.argv[1]) if sys.argv[1:] else 100
+JUDGES = Path(sys.argv[2]) if sys.argv[2:] else None
 POINTS = 200  # per road, in the comparison of shapes
 WHOLE_PROCESS = f"""
 from roadgpt.brief import read
@@ -110,11 +113,11 @@ def _apart(one: np.ndarray, other: np.ndarray) -> float:
 
 def _prompts(referee: ModuleType | None, seed: int, roads: int = 10) -> None:
     """The development prompts, ten roads each."""
-    file = SHARED / "prompts" / "dev.jsonl"
-    if referee is None or not file.exists():
+    if JUDGES is None:
         print("development prompts: not at hand")
         return
-    prompts = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
+    text = (JUDGES / "prompts" / "dev.jsonl").read_text(encoding="utf-8")
+    prompts = [json.loads(line) for line in text.splitlines()]
     perfect = 0
     for prompt in prompts:
         brief, earlier, right = read(prompt["prompt"]), list[Design](), 0
@@ -128,10 +131,9 @@ def _prompts(referee: ModuleType | None, seed: int, roads: int = 10) -> None:
 
 
 def the_referee() -> ModuleType | None:
-    file = SHARED / "referee.py"
-    if not file.exists():
+    if JUDGES is None:
         return None
-    spec = importlib.util.spec_from_file_location("referee", file)
+    spec = importlib.util.spec_from_file_location("referee", JUDGES / "referee.py")
     assert spec
     assert spec.loader
     module = importlib.util.module_from_spec(spec)

@@ -13,6 +13,7 @@ import argparse
 import os
 import time
 from collections import defaultdict
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from multiprocessing import get_context
@@ -91,7 +92,9 @@ def added(cell: DriveTally, road: Road, drive: Drive, world: World) -> None:
     cell.slopes += bool(np.ptp(grades, axis=1).max() > 0.03)
 
 
-def one(index: int, prompt: str) -> tuple[dict[tuple[str, str, int], DriveTally], float]:
+def one(
+    index: int, prompt: str, speeds: Sequence[int]
+) -> tuple[dict[tuple[str, str, int], DriveTally], float]:
     """All drives on one road, and the seconds of processor time that they took."""
     begun = time.process_time()
     run = perform(brief_of(prompt, World(), PLAIN), SEED, World(), PLAIN, index)
@@ -99,39 +102,40 @@ def one(index: int, prompt: str) -> tuple[dict[tuple[str, str, int], DriveTally]
     assert run.is_valid
     cells = {}
     for name in NAMES:
-        for kmh in SPEEDS:
+        for kmh in speeds:
             cell = cells[prompt, name, kmh] = DriveTally()
             added(cell, run.road, *driven(name, kmh, run.road))
     return cells, time.process_time() - begun
 
 
-def driven_all(roads: int, minutes: float, jobs: int) -> list[str]:
+def driven_all(roads: int, minutes: float, jobs: int, speeds: Sequence[int]) -> list[str]:
     """The table; it is printed as it grows, for it takes a while."""
     cells: dict[tuple[str, str, int], DriveTally] = defaultdict(DriveTally)
     lines: list[str] = []
     used = 0.0
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
         for first in range(1, roads + 1, BATCH):
-            tasks = [(index, prompt) for index in range(first, first + BATCH) for prompt in PROMPTS]
+            last = min(first + BATCH - 1, roads)
+            tasks = [(index, prompt, speeds) for index in range(first, last + 1) for prompt in PROMPTS]
             for made, seconds in pool.map(one, *zip(*tasks, strict=True)):
                 used += seconds
                 for key, cell in made.items():
                     cells[key] = cells[key] + cell
-            lines = table(cells, first + BATCH - 1)
+            lines = table(cells, last, speeds)
             print("\n".join([*lines, f"{used:.0f} s of processor time\n"]), flush=True)
             if used > 60 * minutes:
                 break
     return lines
 
 
-def table(cells: dict[tuple[str, str, int], DriveTally], count: int) -> list[str]:
+def table(cells: dict[tuple[str, str, int], DriveTally], count: int, speeds: Sequence[int]) -> list[str]:
     lines = [
-        f"| roads ({count} each) | driver | " + " | ".join(f"{kmh} km/h" for kmh in SPEEDS) + " |",
-        "|---|---|" + "---|" * len(SPEEDS),
+        f"| roads ({count} each) | driver | " + " | ".join(f"{kmh} km/h" for kmh in speeds) + " |",
+        "|---|---|" + "---|" * len(speeds),
     ]
     for prompt in PROMPTS:
         for name in NAMES:
-            row = " | ".join(told(cells[prompt, name, kmh]) for kmh in SPEEDS)
+            row = " | ".join(told(cells[prompt, name, kmh]) for kmh in speeds)
             lines.append(f"| {prompt} | `{name}` | {row} |")
     return lines
 
@@ -162,11 +166,12 @@ def steps(observation: str) -> float:
 def main() -> None:
     parser = argparse.ArgumentParser(description="Drivers that see, at several speeds.")
     parser.add_argument("--roads", type=int, default=20, help="of each description, at most")
+    parser.add_argument("--speeds", type=int, nargs="+", default=SPEEDS, metavar="KMH")
     parser.add_argument("--minutes", type=float, default=1.0, help="of processor time, after which it ends")
     parser.add_argument("-j", "--jobs", type=int, default=1)
     parser.add_argument("--write", action="store_true", help="put the tables into docs/explanation/vision.md")
     given = parser.parse_args()
-    lines = driven_all(given.roads, given.minutes, given.jobs)
+    lines = driven_all(given.roads, given.minutes, given.jobs, given.speeds)
     rates = {name: steps(name) for name in ("state", "camera")}
     lines += [
         "",

@@ -3,6 +3,7 @@
 To hunt for new ones: HYPOTHESIS_PROFILE=hunt python -m pytest
 """
 
+import gc
 import os
 import signal
 import sys
@@ -36,6 +37,12 @@ watch_commands()
 # Tests that a shell started in the background ignore Ctrl-C, and all that they start would inherit that.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def pytest_collection_finish() -> None:
+    """Ten thousand tests and all that they import stay until the end; to look at them again and again takes
+    seconds."""
+    gc.freeze()
 
 
 @pytest.fixture

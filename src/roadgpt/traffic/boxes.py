@@ -2,10 +2,10 @@
 
 import math
 
-from roadgpt.compiled import inlined
+from roadgpt.compiled import compiled, inlined
 
 
-@inlined
+@compiled
 def touch(
     dx: float, dy: float, heading: float, length: float, width: float, heading_2: float, length_2: float,
     width_2: float,

@@ -86,7 +86,7 @@ class Crowd(NamedTuple):
     """GREEN, YELLOW or RED for each lane."""
 
 
-@inlined
+@compiled
 def idm(
     v: float, wanted: float, gap: float, leader: float, pull: float, brake: float, headway: float
 ) -> float:
@@ -217,7 +217,7 @@ def _holds(crowd: Crowd, j: int, lane: int, until: float) -> bool:
     return False
 
 
-@inlined
+@compiled
 def time_over(v: float, way: float, top: float, pull: float) -> float:
     """Returns the seconds that a vehicle needs for some metres when it accelerates up to a speed."""
     if v >= top:
