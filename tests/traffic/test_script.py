@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -397,6 +398,13 @@ def test_who_comes_from_behind_is_there_from_50_m_before_the_road_on() -> None:
     np.testing.assert_allclose(apart - (12 + BOX.length) / 2, 5 * 50 / 3.6, atol=0.03)
 
 
+@cache
+def limited_dry(scene: str) -> list[tuple[str, bool]]:
+    dry = rehearsed(STRAIGHT, WORLD.changed(scene=scene), 1)
+    assert dry is not None
+    return [*dry.limited.items()]
+
+
 DOWN = Road.through([[x, 0, 100 - 0.12 * x] for x in range(0, 901, 20)])
 LEVEL = 9.81 / np.hypot(1, 0.12)
 
@@ -434,9 +442,7 @@ def test_nobody_accelerates_more_than_friction_and_grade_allow_and_that_is_said(
     assert (start, is_prescribed) == (did, True)
     assert number.partition(" not ")[2].startswith(asked)
     assert f": friction is {friction:g}" in number
-    dry = rehearsed(STRAIGHT, WORLD.changed(scene=scene), 1)
-    assert dry is not None
-    assert all(" sideways" in said and not prescribed for said, prescribed in dry.limited.items())
+    assert all(" sideways" in said and not prescribed for said, prescribed in limited_dry(scene))
 
 
 def test_a_scenario_that_prescribes_more_than_the_road_gives_is_invalid_before_driving() -> None:

@@ -253,7 +253,7 @@ def _driven(run: Run, despite_findings: bool = False) -> Run:
     begun, driver = time.perf_counter(), None
     try:
         driver = driver_of(setup.driver)  # a new driver for each road, so that nothing carries over
-        if setup.scenario and run.world.scene.actors:
+        if setup.scenario:
             _refuse_beyond_grip(run.road, run.world, run.seed)
         recording = recording_of(setup)
         tracks = None if recording is None else recording.on(run.road, run.world)
