@@ -1,5 +1,4 @@
-"""Follows the others on the road during a drive: which of them the driver sees, and when the car touches one
-of them."""
+"""Follows the others on the road during a drive: whom the driver sees, and when the car touches one."""
 
 import math
 from collections.abc import Sequence

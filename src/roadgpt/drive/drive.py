@@ -172,8 +172,7 @@ class Drive:
 
     @property
     def max_outside(self) -> float:
-        """Largest share of the car's box outside its lane, 0..1, over the steps that ``lane_steps``
-        counts."""
+        """Largest share of the car's box outside its lane, 0..1, over the steps of ``lane_steps``."""
         return float(self.columns["outside"][: self.lane_steps].max())
 
     def handed_to(self, step: int) -> str | None:

@@ -70,8 +70,7 @@ def _straight_on(row: FloatArray, along: FloatArray) -> FloatArray:
 
 
 def stations_of(sampled: SampledRoad) -> FloatArray:
-    """Returns the station of each row of the table. A row beyond an end of the road gets the station of
-    that end."""
+    """Returns the station of each row of the table; beyond an end of the road, that of the end."""
     s = sampled.first + sampled.step * np.arange(len(sampled.table))
     return np.clip(s, 0.0, sampled.length)
 

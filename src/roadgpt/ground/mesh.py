@@ -145,8 +145,7 @@ def _triangles(points: Array, ground: Ground) -> NDArray[np.int64]:
 
 
 def _with_missing_halved(rings: tuple[Array, ...], triangles: NDArray[np.int64]) -> tuple[Array, ...] | None:
-    """Returns the rings with a point in the middle of each segment that is no side of a triangle, None if all
-    are."""
+    """Returns the rings with a point in the middle of each segment that is no triangle's side, or None."""
     n = int(triangles.max(initial=0)) + 1
     sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     there = np.unique(sides.min(axis=1) * n + sides.max(axis=1))

@@ -67,8 +67,7 @@ def refuse_links(*paths: Path) -> None:
 
 
 def remove_numbered(folder: Path) -> None:
-    """Removes the files of a folder that are named by a number, such as ``3.png``, which an earlier call
-    wrote."""
+    """Removes an earlier call's files of a folder that are named by a number, such as ``3.png``."""
     refuse_links(folder)
     with explained(RoadGPTError, f"cannot write into {folder}", "make room there"):
         for path in folder.glob("[0-9]*.*"):

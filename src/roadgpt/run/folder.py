@@ -125,8 +125,7 @@ def write_run(run: Run, campaign: Path, draw: Draw | None = None) -> Path:
 
 
 def write_run_folder(run: Run, campaign: Path, draw: Draw | None = None) -> Path:
-    """Writes the Run's own folder and returns it. Until the test file exists, the Run does not count as
-    finished."""
+    """Writes the Run's own folder and returns it. The Run is not finished until the test file exists."""
     folder = run_folder(campaign, run.index)
     refuse_links(campaign / RUNS, folder)
     with whole_folder(folder) as draft:

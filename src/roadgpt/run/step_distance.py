@@ -18,8 +18,7 @@ EPS_METRES = 0.2
 
 
 def steps_of(points: ArrayLike) -> Array:
-    """Returns steps ``(n - 1, 2)`` between points ``(n, 2)``: change of direction in degrees, length in
-    metres."""
+    """Returns steps ``(n - 1, 2)`` between points ``(n, 2)``: turn in degrees, length in metres."""
     move = np.diff(np.asarray(points, float), axis=0)
     direction = np.degrees(np.arctan2(move[:, 1], move[:, 0]))
     return np.stack([np.diff(direction, prepend=direction[:1]), np.hypot(*move.T)], axis=-1)

@@ -325,5 +325,4 @@ WAYS: Mapping[str, tuple[Callable[[_Around], Iterator[Way | None]], str]] = {
     "ramp": (_from_ramp, "ramp that joins its lane after {near:.0f} m"),
     "turn_off": (_turning_off, "junction after {near:.0f} m where somebody {where} can turn off"),
 }
-"""The ways of those at a place, or who turn off, the best ones first, and what is missing if there are none.
-"""
+"""The ways of those at a place, or who turn off, best first, and what is missing if there are none."""
