@@ -178,8 +178,8 @@ def test_what_a_road_cannot_show_is_told_by_name_and_number(tmp_path: Path) -> N
     rest = (
         '<lateralProfile><superelevation s="0" a="0.05" b="0" c="0" d="0"/>'
         '<shape s="0" t="1" a="0.1" b="0" c="0" d="0"/></lateralProfile>'
-        '<objects><object id="1"/><object id="2"/><tunnel id="3"/></objects>'
-        '<signals><signal id="1"/><signalReference id="2"/></signals><railroad/>'
+        '<objects><object id="1" s="1"/><object id="2" s="2"/><tunnel id="3"/></objects>'
+        '<signals><signal id="1" s="3"/><signalReference id="2" s="4"/></signals><railroad/>'
         "<surface><CRG/></surface><link><successor/></link>"
     )
     wide = (

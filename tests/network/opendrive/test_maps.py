@@ -319,6 +319,8 @@ def test_what_a_map_says_of_speed_and_friction_is_that_of_its_lanes(tmp_path: Pa
          "it is linked to a road that is left out or not there (road 3)"),
         ([*crossing(), road(3, (0, 9, 0, 9), TWO, more=TREE)],
          "left out: objects of type tree (road 3)"),
+        ([*crossing(), road(3, (0, 9, 0, 9), TWO, more='<signals><signal s="nan" type="206"/></signals>')],
+         "left out: what has no place: in a <signal>, s is 'nan', which is not a number (road 3)"),
         ([*crossing(), road(3, (0, 9, 0, 9), TWO, plan=BROKEN)], "left out: roads of which"),
         ([*crossing(), road(3, (0, 9, 0, 9), TWO, plan=SHAPELESS)],
          "left out: roads of which the geometry has no shape (road 3)"),

@@ -171,6 +171,13 @@ def read_road(node: Element, remarks: Remarks) -> FileRoad | None:
     road_id = node.get("id", "?")[:40]
     where = f"road {road_id}"
     in_order(node, remarks, where)
+    for holder in (*node.findall("signals"), *node.findall("objects")):
+        for each in [*holder]:
+            try:
+                number(each, "s")
+            except UsageError as error:
+                holder.remove(each)
+                remarks.add(f"left out: what has no place: {str(error).partition(';')[0]}", where)
     is_swapped = _signed(node, remarks, where)
     line = placed_line(node, remarks, where)
     length = float(line.of_file[-1])
