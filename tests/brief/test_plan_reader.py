@@ -10,7 +10,9 @@ from roadgpt.brief.model import Amount, Brief, Clause, exactly
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.plan import PlanReader
 from roadgpt.brief.refusal import BEYOND, CLASHING
+from roadgpt.design.room import world_for, world_remarks
 from roadgpt.errors import BriefError
+from roadgpt.road import World
 
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "plans.md"
 
@@ -39,7 +41,7 @@ def test_things_beside_the_road_are_kept_and_told_by_name() -> None:
     assert remarks(brief, 250) == (
         "a roundabout is built as a part of a route, such as 'a roundabout, second exit'; the road is made"
         " without it",
-        "the words say 'wet': friction is 0.6; --friction gives another",
+        "the words say 'wet': friction is 0.6",
     )
     assert Brief.model_validate_json(brief.model_dump_json()) == brief
 
@@ -69,8 +71,9 @@ def test_every_name_of_the_language_has_a_remark_and_stands_on_the_page() -> Non
     assert not NOT_BUILT.keys() & SAID_OTHERWISE.keys()
     assert not {*BESIDE, *CLASHING, *BEYOND} - words
     for name in BESIDE:
-        (told,) = remarks(Brief(beside=(name,)), 250)
-        assert len(told) > 20
+        told = remarks(Brief(beside=(name,)), 250)
+        told += world_remarks(brief := Brief(beside=(name,)), World(), world_for(brief, World()))
+        assert len(told[0]) > 20
 
 
 @pytest.mark.parametrize("line", examples("plan"))

@@ -78,7 +78,7 @@ def test_a_surface_is_never_left_out_in_silence() -> None:
     assert "the surface of --scene goes before the friction 0.7 of the file" in told.output
     assert read_run(Path("icy/runs/0001")).world.site.friction == 0.1
     told = roadgpt("drive", road, "--scene", "ice", "--friction", 0.8, "--out", "typed")
-    assert "'ice', but friction 0.8 is set; the surface in the words is not used" in told.stderr
+    assert "friction 0.8 is set and goes before 'ice' of the scene" in told.stderr
     assert read_run(Path("typed/runs/0001")).world.site.friction == 0.8
 
 

@@ -51,7 +51,7 @@ def test_a_lane_that_cannot_be_is_refused(line: str, said: str) -> None:
 def test_what_is_not_built_of_the_landscape_is_said() -> None:
     brief = read("straight && lake along left; town through; bridge x2 len=40", "plan")
     (said,) = (each for each in remarks(brief, 250.0) if "not built" in each)
-    assert said == "not built yet: a town to go through; the road is made without it"
+    assert said == "not built: a town to go through; the road is made without it"
     without = read("straight && lake along left; bridge x2 len=40", "plan")
     assert not any("not built" in each for each in remarks(without, 250.0))
 

@@ -188,6 +188,18 @@ def test_the_drive_is_that_of_the_run(driven: Run) -> None:
     assert drive["car"]["length"] == driven.drive.car.length
 
 
+def test_a_drive_that_a_tyre_failed_is_in_the_colour_of_failing_from_then_on() -> None:
+    """The page is told when the oracle was against the car, not only how much of the car was outside."""
+    run = prove(design(), 7, World().changed(oracle="departure"), Setup(driver="beamng_like"))
+    assert run.outcome == "FAIL"
+    assert run.verdict is not None
+    columns = view.scene(run)["drive"]["columns"]
+    first = columns["failed"].index(1)
+    assert columns["time"][first] == pytest.approx(run.verdict.at_time, abs=0.02)
+    assert 0 < columns["outside"][first] < 0.1
+    assert not any(columns["failed"][:first])
+
+
 def test_a_failed_drive_tells_where_and_when() -> None:
     run = prove(design(), 7, World(site=Site(friction=0.15)))
     assert run.outcome == "FAIL"

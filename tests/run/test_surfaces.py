@@ -14,6 +14,9 @@ from click.testing import CliRunner, Result
 
 from page_words import words_of
 from roadgpt.brief import Brief, exactly, read, remarks, sentence
+from roadgpt.brief.beside import IN_SCENES
+from roadgpt.brief.plan import read_scene
+from roadgpt.brief.scene import Scene, scene_text
 from roadgpt.campaign.lifecycle import begin, work
 from roadgpt.campaign.model import CellBudget
 from roadgpt.campaign.plan import Plan, read_plan
@@ -21,6 +24,7 @@ from roadgpt.campaign.record import Record
 from roadgpt.campaign.run_folder import campaign
 from roadgpt.cli import app
 from roadgpt.cli.options import WORLD
+from roadgpt.design.room import world_for
 from roadgpt.errors import UsageError
 from roadgpt.road import Limits, Road, Site, World
 from roadgpt.run import Setup, perform, prove, read_run
@@ -30,7 +34,7 @@ from roadgpt_sbft import RoadGPTTestGenerator
 WET, ICE, DRY = "turn x2 | beside(wet)", "turn x2 | beside(wet, ice)", "turn x2"
 PLANS = Setup(reader="plan", drives=False)
 USED = "the words say 'wet': friction is 0.6; --friction gives another"
-SET = "the words say 'wet', but friction {} is set; the surface in the words is not used"
+SET = "the words say 'wet', but friction is {}: the surface in the words is not used"
 
 
 def roadgpt(*words: object) -> Result:
@@ -47,14 +51,35 @@ def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_the_slipperiest_surface_counts_and_every_one_is_said() -> None:
     three = Brief(turns=exactly(3), beside=("ice", "night", "snow", "wet"))
     assert three.friction == 0.1
-    assert Brief(beside=("rain", "snowfall", "gravel")).friction is None
+    assert Brief(beside=("snowfall", "gravel")).friction is None
     assert sentence(three) == "A road with 3 turns; on a wet road; on a snowy road; on an icy road."
     assert remarks(three, 250)[1] == (
-        "the words say 'wet', 'snow' and 'ice': the lowest friction counts, 0.1; --friction gives another"
+        "the words say 'wet', 'snow' and 'ice': the lowest friction counts, 0.1"
     )
-    assert remarks(Brief(beside=("wet",)), 250, 0.6) == (USED,)
+    assert remarks(Brief(beside=("wet",)), 250, 0.6, (), False) == (USED,)
     assert remarks(Brief(beside=("wet",)), 250, 1.0) == (SET.format(1),)
-    assert remarks(Brief(beside=("rain",)), 250) == ("rain is not built yet; the road is made without it",)
+    assert remarks(Brief(beside=("wind",)), 250) == ("wind is not built; the road is made without it",)
+
+
+@pytest.mark.parametrize("name", IN_SCENES)
+def test_what_a_scene_can_have_is_not_told_to_be_unbuilt(name: str) -> None:
+    """The scene that the remark proposes is one, and all that was said is in it."""
+    (said,) = remarks(Brief(beside=(name,)), 250)
+    (proposed,) = re.findall(r"; --scene '([^']+)' adds it$", said)
+    assert "yet" not in said
+    assert scene_text(read_scene(proposed))
+
+
+def test_rain_and_fog_of_the_words_are_driven_in_and_rain_makes_the_road_wet() -> None:
+    """Rain from 2.5 to 7.6 mm/h is moderate (Glossary of Meteorology), fog below 200 m is thick."""
+    found = world_for(Brief(beside=("rain", "fog")), World())
+    assert (str(found.scene.rain), str(found.scene.fog)) == ("2.5 to 7.6", "50 to 200")
+    assert found.site.friction == 0.6
+    assert world_for(Brief(beside=("rain", "ice")), World()).site.friction == 0.1
+    given = world_for(Brief(beside=("rain", "fog")), World(scene=read_scene("rain 20")))
+    assert (str(given.scene.rain), str(given.scene.fog)) == ("20", "50 to 200")
+    none = world_for(Brief(beside=("rain", "fog", "snow")), World(scene=Scene()))
+    assert none == World(scene=Scene())
 
 
 @pytest.mark.parametrize(("name", "friction"), [("wet", 0.6), ("snow", 0.35), ("ice", 0.1)])
@@ -92,12 +117,12 @@ def test_run_says_it_writes_it_and_repeats_it(tmp_path: Path) -> None:
     assert f"note: {USED}" in said
     assert "on a wet road" in said.splitlines()[0]
     card = json.loads(Path("a/runs/0001/run.json").read_text())
-    assert card["remarks"] == [USED]
+    assert card["remarks"] == [USED.partition("; --")[0]]
     assert card["request"]["world"]["friction"] == 0.6
     with Path("a/experiment_description.csv").open() as file:
         assert next(csv.DictReader(file))["friction"] == "0.6"
     shown = roadgpt("show", "a/runs/0002").stdout
-    assert USED in shown
+    assert USED.partition("; --")[0] in shown
     assert shown.count("--friction 0.6") == 2  # from the words, and from the road's file
     # the same command goes on in its folder, and another friction does not
     assert "all 2 roads are there" in roadgpt("run", "--plan", WET, "-n", 2, "--out", "a").stdout

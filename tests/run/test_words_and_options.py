@@ -69,10 +69,12 @@ def test_what_the_words_say_stands_unless_an_option_says_otherwise(words: str, s
         surface = want.get("surface") or ("wet" if "rain" in want else None)
         of_surface = FRICTION[surface] if surface else 1.0
         assert world.site.friction == (of_surface if friction is None else friction), (scene, friction)
-        noted = remarks(brief, 700.0, world.site.friction, world.scene.surfaces)
+        noted = remarks(brief, 700.0, world.site.friction, world.scene.surfaces, friction is not None)
         said = [*noted, *world_remarks(brief, usual, world)]
-        claims = [each for each in said if "friction" in each and " is set" in each]
-        assert not claims if friction is None else all("friction 0.8 is set" in each for each in claims)
+        told_of = [each for each in said if "friction is" in each]
+        assert all(f"friction is {world.site.friction:g}" in each for each in told_of)
+        assert not any("--friction" in each for each in said if friction is not None)
+        assert not any("is set" in each for each in told_of)
         lost = {name for name, each in told(words).items() if want[name] != each}
         of_scene_lost = lost if "|" not in words else set()
         assert any("is set and used" in each for each in said) == bool(of_scene_lost), said

@@ -12,9 +12,9 @@ are listed in ``Brief.unused``. All readers take the meanings of words from one 
 reader may also have a method ``alternatives(words, number, temperature)``, which returns several
 different readings of a vague description, the likeliest first."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import cache
-from typing import Protocol, cast
+from typing import Any, Protocol, cast
 
 from roadgpt import plugins
 from roadgpt.brief import beside
@@ -175,9 +175,7 @@ def alternatives(
     return (first, *(brief for brief in others if is_possible(brief, map_size)))
 
 
-def remarks(
-    brief: Brief, map_size: float, friction: float | None = None, surfaces: Sequence[str] = ()
-) -> tuple[str, ...]:
+def remarks(brief: Brief, map_size: float, *of_surface: Any) -> tuple[str, ...]:
     """Returns what the user should know about a road of this Brief, as sentences without full stops.
 
     For each thing in ``brief.beside``, a sentence says that the thing is not built, must be given as a
@@ -187,11 +185,11 @@ def remarks(
     Args:
         brief: the Brief.
         map_size: side of the square map in metres.
-        friction: friction coefficient of the road; with None, a surface named in the description sets it.
-        surfaces: what sets the friction in the scene of the drive, which may be another one."""
+        of_surface: friction of the road, and what sets it in the scene of the drive, which may be another
+            one, as ``beside.surface_remark`` takes them; without, a surface of the description sets it."""
     things = (*brief.beside, *brief.scene.surfaces)
     of_land = filter(None, [land_remark(brief.scene)])
-    return (*beside.remarks(things, friction, surfaces), *of_land, *motorway_remarks(brief, map_size))
+    return (*beside.remarks(things, *of_surface), *of_land, *motorway_remarks(brief, map_size))
 
 
 def reader_of(name: str, chat: ChatSettings | None = None) -> Reader:

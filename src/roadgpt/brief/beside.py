@@ -7,16 +7,19 @@ nothing is ignored silently."""
 import tomllib
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
-from roadgpt.brief.scene import LANDS
+from roadgpt.brief.scene import LANDS, WEATHER
 from roadgpt.brief.words import SURFACES
 from roadgpt.reading import read_text
 
 TEXTS: dict[str, dict[str, str]] = tomllib.loads(read_text(Path(__file__).with_name("beside.toml")))
 """What is said of the things that are not built, and in refusals: by the part of the table, and by name."""
-NOT_BUILT, ON_ROUTES, SAID_OTHERWISE = (TEXTS[part] for part in ("not_built", "on_routes", "said_otherwise"))
-"""The things that RoadGPT does not build; those that are built as parts of a route, with words that ask for
-them; and wishes that it understands but does not build from these words, with the remark for each. In
+NOT_BUILT, ON_ROUTES, IN_SCENES, SAID_OTHERWISE = (
+    TEXTS[part] for part in ("not_built", "on_routes", "in_scenes", "said_otherwise")
+)
+"""The things that are not built by their names; those that are parts of a route, with words that ask for
+them; those that a scene has; and wishes that are not built from words, with the remark for each. In
 ``Brief.beside``, names on routes come only from plans and from readers that do not know routes."""
 NETWORKS = (*ON_ROUTES, "loop")
 """Names of the things that are not a single road. If a reader other than ``plan`` puts one of them into
@@ -24,13 +27,9 @@ NETWORKS = (*ON_ROUTES, "loop")
 BESIDE = frozenset({*NOT_BUILT, *SAID_OTHERWISE, *SURFACES})
 
 
-def remarks(names: Sequence[str], friction: float | None = None, others: Sequence[str] = ()) -> Iterator[str]:
-    """Yields what the user should know about the named things, as sentences without full stops.
-
-    Args:
-        names: names from ``Brief.beside``.
-        friction: friction coefficient of the road; with None, a surface in ``names`` sets it.
-        others: what sets the friction in the scene of the drive."""
+def remarks(names: Sequence[str], *of_surface: Any) -> Iterator[str]:
+    """Yields what the user should know about the named things, as sentences without full stops; a surface
+    is told of as ``surface_remark`` does."""
     for name in names:
         if name in ON_ROUTES:
             yield (
@@ -39,11 +38,13 @@ def remarks(names: Sequence[str], friction: float | None = None, others: Sequenc
             )
         elif name in LANDS:
             yield f"{NOT_BUILT[name]}: the road gets {LANDS[name]}"
-        elif name in NOT_BUILT:
-            yield f"{NOT_BUILT[name]} is not built yet; the road is made without it"
-        elif name not in SURFACES:
+        elif name in IN_SCENES:
+            yield f"the road is made without {NOT_BUILT[name]}; --scene '{IN_SCENES[name]}' adds it"
+        elif name in NOT_BUILT and name not in WEATHER:
+            yield f"{NOT_BUILT[name]} is not built; the road is made without it"
+        elif name in SAID_OTHERWISE:
             yield SAID_OTHERWISE[name]
-    if said := surface_remark(names, friction, others):
+    if said := surface_remark(names, *of_surface):
         yield said
 
 
@@ -56,13 +57,14 @@ def networks_in(names: Iterable[str]) -> str:
     said = " and ".join(NOT_BUILT[name] for name in named)
     example = next((ON_ROUTES[name] for name in named if name in ON_ROUTES), "")
     if not example:
-        return f"{said} cannot be built yet"
+        return f"{said} cannot be built"
     return f"it is not clear where {said} should be; say it in driving order, such as '{example}'"
 
 
 def slipperiest(names: Iterable[str]) -> str | None:
-    """Returns the slipperiest surface among the names; None if there is none."""
-    named = [each for each in names if each in SURFACES]
+    """Returns the slipperiest surface among the names, of which rain makes a road wet; None if there is
+    none."""
+    named = {"wet" if each == "rain" else each for each in names} & SURFACES.keys()
     return min(named, key=lambda each: SURFACES[each].friction, default=None)
 
 
@@ -71,17 +73,25 @@ def friction_of(names: Iterable[str]) -> float | None:
     return None if (name := slipperiest(names)) is None else SURFACES[name].friction
 
 
-def surface_remark(names: Sequence[str], friction: float | None = None, others: Sequence[str] = ()) -> str:
+def surface_remark(
+    names: Sequence[str], friction: float | None = None, others: Sequence[str] = (), is_set: bool = True
+) -> str:
     """Returns a sentence on whether the named surface, such as ice, sets the friction; empty if no surface is
-    named. The arguments are those of ``remarks``."""
+    named.
+
+    Args:
+        names: names from ``Brief.beside``.
+        friction: friction coefficient of the road; with None, a surface in ``names`` sets it.
+        others: what sets the friction in the scene of the drive.
+        is_set: whether the user gave a friction, who is otherwise told how."""
     own = friction_of(names)
     if own is None:
         return ""
-    *more, last = (f"'{name}'" for name in SURFACES if name in names)
+    *more, last = (f"'{name}'" for name in ("rain", *SURFACES) if name in names)
     said = f"{', '.join(more)} and {last}" if more else last
     if friction not in (None, own) and friction == friction_of(others):
         return f"the words say {said}, but the given scene says '{others[0]}': friction is {friction:g}"
     if friction not in (None, own):
-        return f"the words say {said}, but friction {friction:g} is set; the surface in the words is not used"
-    which = "the lowest friction counts, " if more else "friction is "
-    return f"the words say {said}: {which}{own:g}; --friction gives another"
+        return f"the words say {said}, but friction is {friction:g}: the surface in the words is not used"
+    told = f"the words say {said}: {'the lowest friction counts, ' if more else 'friction is '}{own:g}"
+    return told if is_set else f"{told}; --friction gives another"

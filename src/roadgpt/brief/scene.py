@@ -3,7 +3,7 @@
 It is told in the terms of OpenSCENARIO: somebody is somewhere at first, and then does one thing after
 another, each begun by a condition. A number may be a range, from which each drive draws."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Literal, NamedTuple, Self, get_args
 
 from pydantic import AfterValidator, StringConstraints, model_validator
@@ -519,9 +519,9 @@ class Scene(Frozen):
         return self.lane or (1 + outer if inner or outer else None)
 
     @property
-    def surfaces(self) -> tuple[Surface, ...]:
+    def surfaces(self) -> tuple[str, ...]:
         """What sets the friction: the surface that is named, or else rain."""
-        return (self.surface,) if self.surface else ("wet",) if self.rain else ()
+        return (self.surface,) if self.surface else ("rain",) if self.rain else ()
 
 
 WEATHER = {"fog": Amount(lo=50, hi=200), "rain": Amount(lo=2.5, hi=7.6)}
@@ -568,16 +568,19 @@ LANDS: Mapping[str, Land] = {
 """The landscape that names in ``Brief.beside`` mean."""
 
 
-def with_lands(scene: Scene, beside: Iterable[str]) -> Scene:
-    """Returns a scene with the landscape that the names in ``Brief.beside`` mean, if it has none itself."""
-    lands = tuple(LANDS[name] for name in beside if name in LANDS)
-    return scene if scene.landscape or not lands else scene.model_copy(update={"landscape": lands})
+def with_named(scene: Scene, beside: Sequence[str]) -> Scene:
+    """Returns a scene with the landscape and the weather that the names in ``Brief.beside`` mean, if it has
+    none itself."""
+    meant: dict[str, object] = {name: WEATHER[name] for name in beside if name in WEATHER}
+    if lands := tuple(LANDS[name] for name in beside if name in LANDS):
+        meant["landscape"] = lands
+    return scene.model_copy(update={name: each for name, each in meant.items() if not getattr(scene, name)})
 
 
 def land_remark(scene: Scene) -> str:
     """Returns a sentence on what is not built of the landscape of a scene; empty if all of it is."""
     lands = ", ".join(str(land) for land in scene.landscape if land.kind == "town")
-    return f"not built yet: {lands}; the road is made without it" if lands else ""
+    return f"not built: {lands}; the road is made without it" if lands else ""
 
 
 def parts_said(scene: Scene) -> Iterator[str]:

@@ -710,10 +710,10 @@ def world_of(values: dict[str, Any]) -> "World":
         given |= limits
     world = World().changed(**{name: value for name, value in given.items() if value is not None})
     if "friction" in world.site.model_fields_set:
-        from roadgpt.brief.beside import friction_of, surface_remark
+        from roadgpt.brief.beside import friction_of
 
         if friction_of(surfaces := world.scene.surfaces) not in (None, world.site.friction):
-            warn(surface_remark(surfaces, world.site.friction))
+            warn(f"friction {world.site.friction:g} is set and goes before '{surfaces[0]}' of the scene")
     return world
 
 

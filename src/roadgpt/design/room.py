@@ -48,26 +48,25 @@ def world_for(brief: Brief | None, world: World) -> World:
 
 def world_remarks(brief: Brief, usual: World, found: World) -> tuple[str, ...]:
     """Returns sentences that say how a Brief affects a World: its friction, its lanes and its map. ``usual``
-    is the World that was given, and ``found`` the one that ``world_for`` returned."""
-    surface = surface_remark(
-        (*brief.beside, *brief.scene.surfaces), found.site.friction, found.scene.surfaces
-    )
-    said = (surface, *lane_remarks(brief, found), speed_remark(brief, found), scene_remark(brief, found))
-    said += (need_remark(brief, found),)
-    said += (map_remark(brief, usual, found),)
-    return tuple(remark for remark in said if remark)
+    is the World that was given, of which no sentence says that it could be given, and ``found`` the one that
+    ``world_for`` returned."""
+    names, is_set = (*brief.beside, *brief.scene.surfaces), "friction" in usual.site.model_fields_set
+    said = (surface_remark(names, found.site.friction, found.scene.surfaces, is_set),)
+    said += (*lane_remarks(brief, usual, found), speed_remark(brief, usual, found))
+    said += (scene_remark(brief, found), need_remark(brief, found), map_remark(brief, usual, found))
+    return tuple(filter(None, said))
 
 
-def lane_remarks(brief: Brief, found: World) -> Iterator[str]:
+def lane_remarks(brief: Brief, usual: World, found: World) -> Iterator[str]:
     """Yields a sentence if the description asks for lanes, and another if it asks for a centre line that the
     road does not get; nothing for networks."""
     if brief.is_of_network:
         return
-    lanes, centre = brief.lanes_text, brief.centre
-    if lanes is not None:
-        own = found.section.lanes
-        other = "; --lanes gives others" if own == lanes else f", but --lanes {own} is set and used"
-        yield f"the words ask for lanes {lanes}{other}"
+    lanes, centre, own = brief.lanes_text, brief.centre, found.section.lanes
+    if lanes is not None and own != lanes:
+        yield f"the words ask for lanes {lanes}, but --lanes {own} is set and used"
+    elif lanes is not None and "lanes" not in usual.section.model_fields_set:
+        yield f"the words ask for lanes {lanes}; --lanes gives others"
     if centre is not None and found.section.centre_line != centre:
         yield f"the words ask for a {centre} centre line, but another one is set and used"
 
@@ -90,28 +89,29 @@ def scene_remark(brief: Brief, found: World) -> str:
         is_land = found.scene.on_the_road == Scene()
         return f"{'the land' if is_land else 'on the road'}: {'; '.join(filter(None, parts))}"
     of_words = scene_text(Scene.model_validate({name: told[name] for name in lost}))
-    return f"the words say {of_words}, but the scene '{scene_plan(found.scene)}' is set and used"
+    other = f"the scene '{own}'" if (own := scene_plan(found.scene)) else "an empty scene"
+    return f"the words say {of_words}, but {other} is set and used"
 
 
-def speed_remark(brief: Brief, found: World) -> str:
+def speed_remark(brief: Brief, usual: World, found: World) -> str:
     """Returns a sentence on the usual speed limit, which a design speed does not change."""
     speeds = sorted({road.speed for road in brief.roads if road.speed is not None})
-    if brief.motorway and found.limits.speed_limit == MOTORWAY_LIMIT:
-        limit = f"{KMH * MOTORWAY_LIMIT:g} km/h"
-        return f"on a motorway, all drive at {limit} at most; --speed-limit gives another limit"
-    if not speeds or "speed_limit" in found.limits.model_fields_set:
+    if "speed_limit" in usual.limits.model_fields_set:
         return ""
+    limit = f"{KMH * found.limits.speed_limit:g} km/h at most; --speed-limit gives another limit"
+    if brief.motorway and found.limits.speed_limit == MOTORWAY_LIMIT:
+        return f"on a motorway, all drive at {limit}"
     said = " and ".join(f"{speed:g}" for speed in speeds)
-    limit = f"{KMH * found.limits.speed_limit:g} km/h"
-    return f"designed for {said} km/h, but driven at {limit} at most; --speed-limit gives another limit"
+    return f"designed for {said} km/h, but driven at {limit}" if speeds else ""
 
 
 def map_remark(brief: Brief, usual: World, found: World) -> str:
     """Returns a sentence on the size of the map, if the words ask for one or the usual map is too small."""
     before, now, asked = usual.site.map_size, found.site.map_size, brief.map_size
-    if asked is not None:
-        other = f"but one of {now:g} m is set and used" if now != asked else "--map-size gives another"
-        return f"the words ask for a map of {asked:g} m; {other}"
-    if now == before:
+    if asked not in (None, now):
+        return f"the words ask for a map of {asked:g} m; but one of {now:g} m is set and used"
+    if asked is not None and usual.given_map is None:
+        return f"the words ask for a map of {asked:g} m; --map-size gives another"
+    if now in (before, asked):
         return ""
     return f"this does not fit on a map of {before:g} m, so the map is {now:g} m wide; --map-size sets it"

@@ -29,7 +29,7 @@ from roadgpt.brief.amount import Amount, Frozen
 from roadgpt.brief.beside import friction_of, slipperiest
 from roadgpt.brief.model import CentreLine
 from roadgpt.brief.plan import read_scene, scene_plan
-from roadgpt.brief.scene import LAND_KINDS, Scene, with_lands
+from roadgpt.brief.scene import LAND_KINDS, Scene, with_named
 from roadgpt.brief.visibility import weather_drawn
 from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, USUAL_MAP
 from roadgpt.errors import BriefError, UsageError
@@ -411,22 +411,26 @@ class World(BaseModel):
         return World.model_validate(kept | values)
 
     def in_scene_of(self, brief: "Brief | None") -> "World":
-        """Returns the World with the scene of a Brief, with the landscape that its words name, and with
+        """Returns the World with the scene of a Brief, with land and weather that its words name, and with
         mountains around a mountain road. Where a scene was given to this World, what it says is kept, and
         what it leaves open is that of the Brief; an empty one takes all of that away."""
         is_given = "scene" in self.model_fields_set
-        if brief is None or (is_given and self.scene == Scene()):
+        if brief is None or self._is_emptied:
             return self
-        scene = with_lands(brief.scene, brief.beside)
+        scene = with_named(brief.scene, brief.beside)
         if brief.surroundings == "mountain" and scene.land is None:
             scene = scene.model_copy(update={"land": "mountain"})
         if scene.surface or is_given:
-            surface = slipperiest((*brief.beside, *([scene.surface] if scene.surface else [])))
+            surface = slipperiest((*brief.beside, scene.surface or ""))
             scene = scene.model_copy(update={"surface": surface})
         said = {name: getattr(scene, name) for name in scene.model_dump(exclude_defaults=True)}
         if is_given:
             said = {name: each for name, each in said.items() if name not in self.scene.model_fields_set}
         return self.changed(scene=self.scene.model_copy(update=said)) if said else self
+
+    @property
+    def _is_emptied(self) -> bool:
+        return "scene" in self.model_fields_set and self.scene == Scene()
 
     def in_weather_of(self, seed: int) -> "World":
         """Returns the World with the fog and rain that a drive with this seed draws from their ranges."""
@@ -436,7 +440,7 @@ class World(BaseModel):
     def on_surface_of(self, brief: "Brief | None") -> "World":
         """Returns the World with the friction of the surface that its scene or a Brief names, such as a wet
         road. A friction that was given to this World is kept, even if it equals the default."""
-        of_words = brief.beside if brief and not self.scene.surface else ()
+        of_words = brief.beside if brief and not (self.scene.surface or self._is_emptied) else ()
         friction = friction_of((*of_words, *self.scene.surfaces))
         if friction is None or "friction" in self.site.model_fields_set:
             return self

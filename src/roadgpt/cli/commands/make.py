@@ -159,7 +159,13 @@ def all_remarks(brief: Brief, world: "World", given: "World") -> tuple[str, ...]
     """Returns sentences on what is not built, or not as described; ``given`` is the World of the user."""
     from roadgpt.design.room import world_remarks
 
-    of_words = remarks(brief, world.site.map_size, world.site.friction, world.scene.surfaces)
+    is_set = {name for part in (given.site, given.section, given.limits) for name in part.model_fields_set}
+    names = [name for name in brief.beside if {"speed": "speed_limit"}.get(name, name) not in is_set]
+    site, surfaces = world.site, world.scene.surfaces
+    of_words = remarks(
+        brief.model_copy(update={"beside": (*names,)}), site.map_size, site.friction, surfaces,
+        "friction" in is_set,
+    )  # fmt: skip
     return tuple(dict.fromkeys((*of_words, *world_remarks(brief, given, world))))  # both tell the surface
 
 

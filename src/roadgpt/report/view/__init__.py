@@ -64,6 +64,7 @@ from roadgpt.scene.trees import SIDE, pictures
 from roadgpt.scene.weather import Weather
 from roadgpt.traffic.actor import STEP
 from roadgpt.verdict.measures import measure
+from roadgpt.verdict.oracle import is_outside
 from roadgpt.verdict.verdict import MOSTLY, PARTLY
 
 __all__ = ["page", "page_of", "scene", "write"]
@@ -153,7 +154,7 @@ OF_OTHERS = {"x": CENTIMETRES, "y": CENTIMETRES, "z": CENTIMETRES, "heading": 3,
 LONGEST, CRITICAL = 20.0, 1.5
 """The longest time to collision in seconds that the page is told; and below which time it is usually called
 critical (van der Horst 1990)."""
-WORLD = ("map_size", "friction", "speed_limit", "oob_tolerance", "z_floor")
+WORLD = ("map_size", "friction", "speed_limit", "z_floor")
 SCALE = {"partly": PARTLY, "mostly": MOSTLY, "colours": [*SEVERE.values()][1:], "failed": VERMILLION}
 """The colours that show how far the car is outside its lane, and the shares of the car outside from which the
 page says "partly" and "mostly"."""
@@ -246,13 +247,15 @@ def _drive(run: Run) -> dict[str, Any] | None:
     kept = np.unique(np.r_[np.arange(0, len(drive), every), len(drive) - 1])
     columns = {name: drive[name][kept] for name in DRIVE}
     columns["heading"] = np.unwrap(columns["heading"])
+    failed = is_outside(road, drive, run.world)[kept]
     height = drive["z"][0] - float(road.at(drive["s"][0], drive["t"][0])[2])
     return {
         "driver": drive.driver,
         "simulator": drive.simulator,
         "ended": drive.ended,
         "car": {**drive.car._asdict(), "height": round(float(height), MILLIMETRES)},
-        "columns": {name: rounded(column, DRIVE[name]) for name, column in columns.items()},
+        "columns": {name: rounded(column, DRIVE[name]) for name, column in columns.items()}
+        | {"failed": failed.astype(int).tolist()},
     }
 
 

@@ -58,11 +58,11 @@ function speedColour(share) {
 const css = (rgb) => `rgb(${rgb.join(",")})`;
 const MARK = "#d55e00", HERE = "#0072b2";
 
-// The colour of how far outside its lane a car is; null up to a tenth of it. The scale comes with the scene.
-function severeColour(scene, share) {
+// The colour of how far outside its lane a car is, or that of failing by the oracle; null up to a tenth of it.
+function severeColour(scene, pose) {
   const { partly, mostly, colours, failed } = scene.severe;
-  if (share > scene.world.oob_tolerance) return failed;
-  return share > mostly ? colours[1] : share > partly ? colours[0] : null;
+  if (pose.failed > 0.5) return failed;
+  return pose.outside > mostly ? colours[1] : pose.outside > partly ? colours[0] : null;
 }
 
 // Colours of what is drawn on paper, as the style sheet has them by day and by night.

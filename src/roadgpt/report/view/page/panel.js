@@ -101,5 +101,5 @@ function tell(find, scene, trip, pose, time) {
     ? share > 0 ? `${share} % of the car outside its lane` : `${Math.abs(middle).toFixed(2)} m ${side} of the lane's middle`
     : "nobody drove here: the view follows the lane";
   lane.classList.toggle("out", share > 0);
-  lane.style.borderColor = (trip.isDriven && severeColour(scene, pose.outside)) || "transparent";
+  lane.style.borderColor = (trip.isDriven && severeColour(scene, pose)) || "transparent";
 }

@@ -188,7 +188,7 @@ function makePlan(canvas, scene, trip, fastest, moveTo) {
     pen.lineTo(-4, 0);
     pen.lineTo(-7, -6.5);
     pen.closePath();
-    pen.fillStyle = (trip.isDriven && severeColour(scene, pose.outside)) || HERE;
+    pen.fillStyle = (trip.isDriven && severeColour(scene, pose)) || HERE;
     pen.strokeStyle = "#fff";
     pen.lineWidth = 2;
     pen.stroke();

@@ -63,7 +63,7 @@ function makeStage(canvas, scene, trip, fastest) {
       camera.updateProjectionMatrix();
     },
     place(pose) {
-      car.show(pose, origin, severeColour(scene, pose.outside || 0));
+      car.show(pose, origin, severeColour(scene, pose));
       dot.position.copy(car.group.position);
       if (others) others.show(pose.time, origin);
       now = pose.time;

@@ -67,11 +67,12 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
   // Where the car was outside its lane, in the colour of how far.
   function outside(pen) {
     if (!scene.drive) return;
-    const { s, outside: share } = scene.drive.columns;
+    const { s, outside: share, failed } = scene.drive.columns;
+    const colourAt = (i) => severeColour(scene, { outside: share[i], failed: failed[i] });
     pen.globalAlpha = 0.3;
     for (let i = 1, from = 0; i < s.length; i++) {
-      const colour = severeColour(scene, share[i]);
-      if (i + 1 < s.length && severeColour(scene, share[i + 1]) === colour) continue;
+      const colour = colourAt(i);
+      if (i + 1 < s.length && colourAt(i + 1) === colour) continue;
       if (colour) {
         pen.fillStyle = colour;
         pen.fillRect(px(s[from]), TOP, Math.max(1, px(s[i]) - px(s[from])), view.tall);

@@ -60,7 +60,7 @@ function imagined(scene) {
       const place = onRoad(road, s, t);
       return {
         ...place, z: place.z + 0.56, pitch: Math.atan(place.grade), speed: PACE, steer: 0, throttle: 0, brake: 0,
-        s, t, outside: 0, time,
+        s, t, outside: 0, failed: 0, time,
       };
     },
     timeAt: (s) => clamp(s, 0, road.length) / PACE,
