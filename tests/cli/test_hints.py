@@ -6,8 +6,12 @@ import pytest
 from click.testing import CliRunner
 
 from hints import HintCollector, kind_of, shortened
+from roadgpt.brief.plan import read_plan
 from roadgpt.campaign import single_test
 from roadgpt.cli import app
+from roadgpt.cli.commands.make import all_remarks
+from roadgpt.design.room import world_for
+from roadgpt.road import World
 
 STRAIGHT_ON = """
 from roadgpt.drive import Command
@@ -62,3 +66,26 @@ def test_a_driver_of_ones_own_goes_through_every_command_that_is_printed(
     without = hints.type([word for word in typed["faults"][1:] if word not in ("--driver", driver)])
     assert without.exit_code == 2
     assert f"name it yourself: --driver '{driver}'" in without.stderr
+
+
+@pytest.mark.parametrize(
+    ("plan", "option", "values"),
+    [
+        ("turn x2 | beside(snow)", "--friction", {"friction": 0.35}),
+        ("turn x2 && ice", "--friction", {"friction": 0.1}),
+        ("turn x2 && rain 5", "--friction", {"friction": 0.8}),
+        ("turn x2 | map_size=500", "--map-size", {"map_size": 500.0}),
+        ("straight 2000", "--map-size", {"map_size": 2500.0}),
+        ("turn x2 | lanes=2", "--lanes", {"lanes": "2+1"}),
+        ("turn x2 | beside(lanes)", "--lanes", {"lanes": "2+1"}),
+        ("turn x2 | beside(lane_width)", "--lane-width", {"lane_width": 3.2}),
+        ("turn x2 | beside(bank)", "--bank", {"bank": "auto"}),
+        ("turn x2 | beside(speed)", "--speed-limit", {"speed_limit": 25.0}),
+        ("turn x2 | speed=80", "--speed-limit", {"speed_limit": 25.0}),
+    ],
+)
+def test_no_option_is_proposed_that_was_just_typed(plan: str, option: str, values: dict[str, object]) -> None:
+    brief, usual, typed = read_plan(plan), World(), World().changed(**values)
+    told, again = (" ".join(all_remarks(brief, world_for(brief, each), each)) for each in (usual, typed))
+    assert option in told
+    assert option not in again

@@ -118,6 +118,12 @@ def test_scenario_and_criticality_stand_in_rows_tables_and_junit() -> None:
         assert (told["scenario"], told["parameters"], told["gap_m"]) == (name, "impact=75", "0")
         assert float(told["impact_kmh"] or 0) == pytest.approx(50, abs=0.5)
         assert "margin_m" not in told
+    suite = ElementTree.parse("c.xml").find("testsuite")
+    assert suite is not None
+    assert suite.get("name") == "nominal roads of scenarios"
+    page = Path(invoke("report", "c").stdout.strip()).read_text()
+    assert "“nominal roads of scenarios”" in page
+    assert "roads that were given" not in page
     shown = [invoke("show", place).stdout for place in ("r", "r/1", "c/c01", "c/c01/1")]
     for text in shown:
         assert f"{name} impact=75" in text

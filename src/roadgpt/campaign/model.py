@@ -23,6 +23,8 @@ GIVEN = "given"  # the generator of roads that are there, and the origin of such
 PATIENCE = 900.0  # s for one test; every drive ends by itself before that
 MOST_TESTS = 10_000_000  # of one cell; numbers of tests have seven digits
 
+NO_WORDS = {GIVEN: "roads that were given", WITHOUT_GOAL: "nominal roads of scenarios"}
+
 T = TypeVar("T")
 U = TypeVar("U")
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from roadgpt.campaign.folder_record import open_record
-from roadgpt.campaign.model import Goal
+from roadgpt.campaign.model import NO_WORDS, Goal
 from roadgpt.campaign.record import Record
 from roadgpt.run import REFUSED
 from roadgpt.verdict.verdict import MOSTLY, PARTLY
@@ -48,6 +48,11 @@ class CellStatus:
     handed_over: int = 0
     """Number of failed tests that are no failures of the driver: see ``Verdict.handed_to``."""
     friction: float | None = 1.0  # friction coefficient of the roads; None if it differs from road to road
+
+    @property
+    def about(self) -> str:
+        """The description, or what the roads are without one."""
+        return self.words or NO_WORDS.get(self.generator, "any road")
 
     @property
     def done(self) -> int:

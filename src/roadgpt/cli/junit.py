@@ -16,7 +16,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from roadgpt.campaign.folder_record import has_tests, is_store, open_record
-from roadgpt.campaign.model import NumberedTest
+from roadgpt.campaign.model import GIVEN, NO_WORDS, NumberedTest
 from roadgpt.cli.screen import Row, row_of
 from roadgpt.errors import RoadGPTError, explained
 from roadgpt.export.markup import XmlElement, escaped
@@ -37,7 +37,6 @@ IN_CASE = (
     "words", "origin", "scenario", "parameters", "gap_m", "ttc_s", "impact_kmh", "seed", "max_oob",
     "beyond_m", "margin_m", "length_m", "at_s_m", "side", "own_share", "handed_to",
 )  # fmt: skip
-UNKNOWN = "roads that were given"
 TIMES = (
     "SELECT number, coalesce(design_s, 0) + coalesce(drive_s, 0) FROM tests "
     "WHERE cell = ? AND outcome IS NOT NULL"
@@ -67,14 +66,14 @@ def suites_of(folder: Path, worse: Mapping[str, str]) -> Iterator[Suite]:
                     own |= {"test": cell.scenario_of(result.proposal.origin)}
                     own |= {"name": Path(file).name or test, "worse": worse.get(f"{place}/{test}", "")}
                     rows.append(row_of(result, file, **own))
-                name, properties, _ = suite_of(cell.request, rows)
+                name, properties, _ = suite_of(cell.request, rows, cell.generator)
                 if cell.name:
                     of_cell = {"cell": cell.name, "generator": cell.generator, "goal": cell.goal}
                     properties = {**properties, **of_cell}
                 yield name if len(cells) == 1 else f"{cell.name}: {name}", properties, rows
 
 
-def suite_of(request: Request, rows: Sequence[Row]) -> Suite:
+def suite_of(request: Request, rows: Sequence[Row], generator: str = GIVEN) -> Suite:
     """Returns the tests of one request, with its settings."""
     setup, world = request.setup, request.world
     properties: Properties = {
@@ -89,7 +88,7 @@ def suite_of(request: Request, rows: Sequence[Row]) -> Suite:
         "speed_limit_kmh": round(world.limits.speed_limit * 3.6, 6),
         "friction": world.site.friction,
     }
-    return request.words[:LONGEST] or UNKNOWN, properties, rows
+    return request.words[:LONGEST] or NO_WORDS.get(generator, "any road"), properties, rows
 
 
 def write_junit(path: Path, suites: Sequence[Suite]) -> None:

@@ -13,7 +13,7 @@ from roadgpt.campaign.csv_tables import RESULTS
 from roadgpt.campaign.faults.fault import Faults, faults_in
 from roadgpt.campaign.folder_record import is_store, open_record, setups_of
 from roadgpt.campaign.gate import Gate
-from roadgpt.campaign.model import GIVEN, WITHOUT_GOAL, NumberedTest
+from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.selection import Choice, Selection, selection_of
 from roadgpt.campaign.status import CellStatus, Status, no_failure, status_of
 from roadgpt.chat import Spent
@@ -34,7 +34,6 @@ COMPARED = 500  # largest number of failures, evenly spread, that are grouped (i
 MOST_CELLS = 40  # largest number of cells that are shown one by one
 MOST_TESTS = 40  # of a cell, one by one
 HEAD, SIDES = ("cell", "done", "pass", "fail", "other", "least margin", "what"), "<>>>>><"
-OF_NO_WORDS = {GIVEN: "roads that were given", WITHOUT_GOAL: "nominal roads of scenarios"}
 LONGEST, WIDEST_TEXT = 60, 300  # letters of a description, and of other texts, in a line of a table
 
 
@@ -142,11 +141,11 @@ def _columns(cell: CellStatus) -> tuple[str, ...]:
     """Returns one cell's row in the table of cells, in the order of ``HEAD``."""
     passed, failed = cell.outcomes.get("PASS", 0), cell.outcomes.get("FAIL", 0)
     margin = "-" if cell.least_margin is None else metres(cell.least_margin)
-    words = plain(cell.words, LONGEST) or OF_NO_WORDS.get(cell.generator, "any road")
-    what = f"{words} ({plain(cell.driver, WIDEST_TEXT)}, {cell.generator}, seed {cell.seed})"
+    by = f"({plain(cell.driver, WIDEST_TEXT)}, {cell.generator}, seed {cell.seed})"
     why = f"; {plain(cell.closed, WIDEST_TEXT)}" if cell.closed else ""
     counts = (cell.done, passed, failed, cell.done - passed - failed)
-    return (cell.name or "-", *(f"{count:,}" for count in counts), margin, what + why)
+    what = f"{plain(cell.about, LONGEST)} {by}{why}"
+    return (cell.name or "-", *(f"{count:,}" for count in counts), margin, what)
 
 
 def json_lines(path: Path | str, choice: Choice | None = None) -> Iterator[str]:

@@ -2,7 +2,7 @@
 report on a million tests needs little memory."""
 
 from base64 import b64encode
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from hashlib import sha256
 from itertools import combinations
 from math import nan
@@ -201,7 +201,7 @@ def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus], is_pa
 
 def _about(of: CellStatus, names: Mapping[str, str]) -> dict[str, str]:
     return {
-        "description": of.words or "roads that were given",
+        "description": of.about,
         "generator": of.generator,
         "driver": names[of.driver],
         "oracle": of.oracle,
@@ -252,7 +252,7 @@ def failures(
 ) -> list[Block]:
     """Returns a chart of failures over the number of tests, one line for each of ``cells``, a table of
     causes, and one of failures: the worst if cars drive on after they have left their lane, or the first."""
-    blocks: list[Block] = [_curves(record, cells), _causes(record, drives_on)]
+    blocks: list[Block] = [_curves(record, cells), *_causes(record, drives_on)]
     order = "margin IS NULL, margin, cell, number" if drives_on else "cell, number"
     some = record.query(
         "SELECT cell, number, margin, max_oob, cause, side, at_s, description FROM "  # noqa: S608 - our words
@@ -320,7 +320,7 @@ def _how_far(margin: float | None, outside: float | None, drives_on: bool) -> li
     return [share, *([decimal(far)] if drives_on else [])]
 
 
-def _causes(record: Record, drives_on: bool) -> Table:
+def _causes(record: Record, drives_on: bool) -> Iterator[Table]:
     found = record.query(
         "SELECT cause, side, count(*), min(margin), max(max_oob) FROM tests WHERE outcome = 'FAIL' "
         "GROUP BY 1, 2 ORDER BY 3 DESC, 1, 2"
@@ -329,7 +329,8 @@ def _causes(record: Record, drives_on: bool) -> Table:
         row(cause or "other", side or "–", count, *_how_far(least, outside, drives_on))
         for cause, side, count, least, outside in found
     ]
-    return Table("causes", "How the car failed", ["cause", "side", "tests", *_far_heads(drives_on)], rows)
+    if rows:
+        yield Table("causes", "How the car failed", ["cause", "side", "tests", *_far_heads(drives_on)], rows)
 
 
 def margins(record: Record, drives_on: bool = False) -> Figure:
@@ -340,7 +341,7 @@ def margins(record: Record, drives_on: bool = False) -> Figure:
     found: Mapping[int, int] = dict(
         record.query(
             "SELECT CAST((max(min(margin, ?), ?) - ?) / ? AS INTEGER), count(*) FROM tests "
-            "WHERE margin IS NOT NULL GROUP BY 1",
+            "WHERE margin IS NOT NULL AND cause IS NOT 'collision' GROUP BY 1",
             (high - width / 2, low, low, width),
         )
     )
