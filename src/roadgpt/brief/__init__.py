@@ -176,17 +176,10 @@ def alternatives(
 
 
 def remarks(brief: Brief, map_size: float, *of_surface: Any) -> tuple[str, ...]:
-    """Returns what the user should know about a road of this Brief, as sentences without full stops.
-
-    For each thing in ``brief.beside``, a sentence says that the thing is not built, must be given as a
-    number, is set by an option, or sets the friction. For a motorway, a sentence says what the word requires
-    and whether the map can hold such a road.
-
-    Args:
-        brief: the Brief.
-        map_size: side of the square map in metres.
-        of_surface: friction of the road, and what sets it in the scene of the drive, which may be another
-            one, as ``beside.surface_remark`` takes them; without, a surface of the description sets it."""
+    """Returns what the user should know about a road of this Brief on a map of ``map_size`` metres, as
+    sentences without full stops: that a thing in ``brief.beside`` is not built, must be given as a number or
+    an option, or sets the friction, and what a motorway requires. ``of_surface`` is what
+    ``beside.surface_remark`` takes; without it, a surface of the description sets the friction."""
     things = (*brief.beside, *brief.scene.surfaces)
     of_land = filter(None, [land_remark(brief.scene)])
     return (*beside.remarks(things, *of_surface), *of_land, *motorway_remarks(brief, map_size))

@@ -31,17 +31,15 @@ def remarks(names: Sequence[str], *of_surface: Any) -> Iterator[str]:
     """Yields what the user should know about the named things, as sentences without full stops; a surface
     is told of as ``surface_remark`` does."""
     for name in names:
+        what, without = NOT_BUILT.get(name), "the road is made without"
         if name in ON_ROUTES:
-            yield (
-                f"{NOT_BUILT[name]} is built as a part of a route, such as '{ON_ROUTES[name]}'; the road is"
-                " made without it"
-            )
+            yield f"{what} is built as a part of a route, such as '{ON_ROUTES[name]}'; {without} it"
         elif name in LANDS:
-            yield f"{NOT_BUILT[name]}: the road gets {LANDS[name]}"
+            yield f"{what}: the road gets {LANDS[name]}"
         elif name in IN_SCENES:
-            yield f"the road is made without {NOT_BUILT[name]}; --scene '{IN_SCENES[name]}' adds it"
-        elif name in NOT_BUILT and name not in WEATHER:
-            yield f"{NOT_BUILT[name]} is not built; the road is made without it"
+            yield f"{without} {what}; --scene '{IN_SCENES[name]}' adds it"
+        elif what and name not in WEATHER:
+            yield f"{what} is not built; {without} it"
         elif name in SAID_OTHERWISE:
             yield SAID_OTHERWISE[name]
     if said := surface_remark(names, *of_surface):
@@ -76,14 +74,9 @@ def friction_of(names: Iterable[str]) -> float | None:
 def surface_remark(
     names: Sequence[str], friction: float | None = None, others: Sequence[str] = (), is_set: bool = True
 ) -> str:
-    """Returns a sentence on whether the named surface, such as ice, sets the friction; empty if no surface is
-    named.
-
-    Args:
-        names: names from ``Brief.beside``.
-        friction: friction coefficient of the road; with None, a surface in ``names`` sets it.
-        others: what sets the friction in the scene of the drive.
-        is_set: whether the user gave a friction, who is otherwise told how."""
+    """Returns a sentence on whether the named surface, such as ice, sets the ``friction``, or ``others``, the
+    surfaces of the scene of the drive, do; empty if none is named. Unless a friction ``is_set``, it says how
+    to."""
     own = friction_of(names)
     if own is None:
         return ""

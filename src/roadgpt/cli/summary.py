@@ -134,18 +134,16 @@ def _headline(status: Status) -> str:
 def cell_lines(cells: Sequence[CellStatus]) -> list[str]:
     """Returns a table with a line for each cell: one combination of the campaign's descriptions, designers,
     drivers and other settings."""
-    return aligned([HEAD, *map(_columns, cells)], SIDES)
-
-
-def _columns(cell: CellStatus) -> tuple[str, ...]:
-    """Returns one cell's row in the table of cells, in the order of ``HEAD``."""
-    passed, failed = cell.outcomes.get("PASS", 0), cell.outcomes.get("FAIL", 0)
-    margin = "-" if cell.least_margin is None else metres(cell.least_margin)
-    by = f"({plain(cell.driver, WIDEST_TEXT)}, {cell.generator}, seed {cell.seed})"
-    why = f"; {plain(cell.closed, WIDEST_TEXT)}" if cell.closed else ""
-    counts = (cell.done, passed, failed, cell.done - passed - failed)
-    what = f"{plain(cell.about, LONGEST)} {by}{why}"
-    return (cell.name or "-", *(f"{count:,}" for count in counts), margin, what)
+    rows: list[Sequence[str]] = [HEAD]
+    for cell in cells:
+        passed, failed = cell.outcomes.get("PASS", 0), cell.outcomes.get("FAIL", 0)
+        margin = "-" if cell.least_margin is None else metres(cell.least_margin)
+        by = f"({plain(cell.driver, WIDEST_TEXT)}, {cell.generator}, seed {cell.seed})"
+        why = f"; {plain(cell.closed, WIDEST_TEXT)}" if cell.closed else ""
+        counts = (cell.done, passed, failed, cell.done - passed - failed)
+        what = f"{plain(cell.about, LONGEST)} {by}{why}"
+        rows.append((cell.name or "-", *(f"{count:,}" for count in counts), margin, what))
+    return aligned(rows, SIDES)
 
 
 def json_lines(path: Path | str, choice: Choice | None = None) -> Iterator[str]:

@@ -51,9 +51,9 @@ def world_remarks(brief: Brief, usual: World, found: World) -> tuple[str, ...]:
     is the World that was given, of which no sentence says that it could be given, and ``found`` the one that
     ``world_for`` returned."""
     names, is_set = (*brief.beside, *brief.scene.surfaces), "friction" in usual.site.model_fields_set
-    said = (surface_remark(names, found.site.friction, found.scene.surfaces, is_set),)
-    said += (*lane_remarks(brief, usual, found), speed_remark(brief, usual, found))
-    said += (scene_remark(brief, found), need_remark(brief, found), map_remark(brief, usual, found))
+    said = [surface_remark(names, found.site.friction, found.scene.surfaces, is_set)]
+    said += [*lane_remarks(brief, usual, found), speed_remark(brief, usual, found)]
+    said += [scene_remark(brief, found), need_remark(brief, found), map_remark(brief, usual, found)]
     return tuple(filter(None, said))
 
 
@@ -89,7 +89,7 @@ def scene_remark(brief: Brief, found: World) -> str:
         is_land = found.scene.on_the_road == Scene()
         return f"{'the land' if is_land else 'on the road'}: {'; '.join(filter(None, parts))}"
     of_words = scene_text(Scene.model_validate({name: told[name] for name in lost}))
-    other = f"the scene '{own}'" if (own := scene_plan(found.scene)) else "an empty scene"
+    other = f"the scene '{scene_plan(found.scene)}'" if found.scene != Scene() else "an empty scene"
     return f"the words say {of_words}, but {other} is set and used"
 
 

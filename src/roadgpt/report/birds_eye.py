@@ -258,7 +258,11 @@ def driven_path(axes: Axes, drive: Drive) -> LineCollection:
     norm = Normalize(0.0, max(SLOWEST, float(speed.max())))
     axes.plot(track[:, 0], track[:, 1], color="white", lw=4.2, zorder=6, solid_capstyle="round")
     pieces = np.stack([track[:-1], track[1:]], axis=1)
-    _draw_rim(axes, pieces, severities(drive, every))
+    found = severities(drive, every)
+    for name in (each for each in OUTSIDE if each in found):
+        some = [piece for piece, where in zip(pieces, found, strict=False) if where == name]
+        rim = LineCollection(some, colors=SEVERE[name], linewidths=RIM, zorder=5.5, capstyle="round")
+        axes.add_collection(rim)
     line = LineCollection(list(pieces), cmap=SPEEDS, norm=norm, linewidths=2.6, zorder=7, capstyle="round")
     line.set_array((speed[:-1] + speed[1:]) / 2)
     axes.add_collection(line)
@@ -286,15 +290,6 @@ def severities(drive: Drive | None, every: int = 1) -> list[Severity]:
         return []
     shares = drive["outside"][: drive.lane_steps]
     return [severity(share) for share in np.maximum.reduceat(shares, np.arange(0, len(shares), every))]
-
-
-def _draw_rim(axes: Axes, pieces: Array, found: list[Severity]) -> None:
-    for name in OUTSIDE:
-        some = [piece for piece, where in zip(pieces, found, strict=False) if where == name]
-        if not some:
-            continue
-        rim = LineCollection(some, colors=SEVERE[name], linewidths=RIM, zorder=5.5, capstyle="round")
-        axes.add_collection(rim)
 
 
 def _network_key(road: Road, world: World, frame: Frame, per_inch: float) -> list[KeyEntry]:

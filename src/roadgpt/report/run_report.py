@@ -100,7 +100,11 @@ def card_of(
     surfaces = {f"{road.friction:g}" for part in parts for road in part.roads if road.friction is not None}
     if surfaces - {f"{world.site.friction:g}"}:
         out["friction of the roads"] = f"{' and '.join(sorted(surfaces))}, by what the words say"
-    return out | {"versions": _versions(parts)}
+    found: dict[str, dict[str, None]] = {}
+    for name, number in (each for part in parts for road in part.roads for each in road.versions.items()):
+        found.setdefault(name, {})[number] = None
+    versions = ", ".join(f"{name} {' and '.join(numbers)}" for name, numbers in found.items())
+    return out | {"versions": versions or "–"}
 
 
 def _said(name: str, value: float | str) -> str:
@@ -109,15 +113,6 @@ def _said(name: str, value: float | str) -> str:
     if isinstance(value, bool):
         shown = "counted" if value else "not counted"
     return f"{name.replace('_', ' ')} {shown}"
-
-
-def _versions(parts: Sequence[RoadGroup]) -> str:
-    found: dict[str, dict[str, None]] = {}
-    for part in parts:
-        for road in part.roads:
-            for name, number in road.versions.items():
-                found.setdefault(name, {})[number] = None
-    return ", ".join(f"{name} {' and '.join(numbers)}" for name, numbers in found.items()) or "–"
 
 
 def sentences_of(
@@ -147,19 +142,13 @@ def sentences_of(
     if good:
         right = f"; the number of turns is right on {percent(sum(turns) / len(turns))}" if turns else ""
         lines.append(f"{share_of(sum(good), len(good))} roads keep every word{right}.")
-    return [*lines, _different(parts)]
-
-
-def _different(parts: Sequence[RoadGroup]) -> str:
     nearest = [float(part.spread.nearest.min()) for part in parts if len(part.compared) > 1]
     twins = sum(len(part.spread.duplicates) for part in parts)
     if not nearest:
-        return "There is one road of each description, so there is nothing to compare."
+        return [*lines, "There is one road of each description, so there is nothing to compare."]
     said = "No near duplicates" if not twins else plural(twins, "pair") + " of near duplicates"
-    return (
-        f"{said} among roads of one description; the nearest two plans are {min(nearest):.1f} m "
-        "apart (root mean square, however shifted, turned or mirrored)."
-    )
+    said += f" among roads of one description; the nearest two plans are {min(nearest):.1f} m "
+    return [*lines, said + "apart (root mean square, however shifted, turned or mirrored)."]
 
 
 def comparisons_of(parts: Sequence[RoadGroup], world: World, between: Sequence[Table] = ()) -> list[Section]:
@@ -188,7 +177,17 @@ def diversity(parts: Sequence[RoadGroup], between: Sequence[Table] = ()) -> Sect
         "and shape."
     ]
     blocks += [table for table in (_within(parts), *between) if table.rows]
-    twins = _twins(parts)
+    twins: list[Block] = [
+        [
+            f"{part.name}: roads ",
+            linked(str(part.compared[i].index), part.href(part.compared[i])),
+            " and ",
+            linked(str(part.compared[j].index), part.href(part.compared[j])),
+            f", {part.spread.metres[i, j]:.1f} m apart",
+        ]
+        for part in parts
+        for i, j in part.spread.duplicates
+    ]
     if twins:
         blocks.append(Details(f"Near duplicates ({plural(len(twins), 'pair')})", twins[:MOST_NAMED]))
     else:
@@ -231,20 +230,6 @@ def _within(parts: Sequence[RoadGroup]) -> Table:
         "computed for whole roads in steps of 5 m; theirs is for 60 m around failures, in steps of 1 m."
     )
     return Table("diversity", "Roads of the same description", heads, rows, note)
-
-
-def _twins(parts: Sequence[RoadGroup]) -> list[Block]:
-    return [
-        [
-            f"{part.name}: roads ",
-            linked(str(part.compared[i].index), part.href(part.compared[i])),
-            " and ",
-            linked(str(part.compared[j].index), part.href(part.compared[j])),
-            f", {part.spread.metres[i, j]:.1f} m apart",
-        ]
-        for part in parts
-        for i, j in part.spread.duplicates
-    ]
 
 
 def _matrix(part: RoadGroup) -> Figure | None:

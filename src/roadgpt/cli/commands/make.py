@@ -160,12 +160,10 @@ def all_remarks(brief: Brief, world: "World", given: "World") -> tuple[str, ...]
     from roadgpt.design.room import world_remarks
 
     is_set = {name for part in (given.site, given.section, given.limits) for name in part.model_fields_set}
-    names = [name for name in brief.beside if {"speed": "speed_limit"}.get(name, name) not in is_set]
-    site, surfaces = world.site, world.scene.surfaces
-    of_words = remarks(
-        brief.model_copy(update={"beside": (*names,)}), site.map_size, site.friction, surfaces,
-        "friction" in is_set,
-    )  # fmt: skip
+    is_set |= {"speed"} & {name.removesuffix("_limit") for name in is_set}
+    open_ = brief.model_copy(update={"beside": tuple(each for each in brief.beside if each not in is_set)})
+    site, of_friction = world.site, (world.site.friction, world.scene.surfaces, "friction" in is_set)
+    of_words = remarks(open_, site.map_size, *of_friction)
     return tuple(dict.fromkeys((*of_words, *world_remarks(brief, given, world))))  # both tell the surface
 
 
