@@ -1,6 +1,7 @@
 """Maps of roads that the planner drafts: an outside referee, where it is at hand, sees what was asked for."""
 
 import json
+from itertools import product
 
 import numpy as np
 import pytest
@@ -150,3 +151,25 @@ def test_the_reference_driver_keeps_its_lane(line: str, seed: int) -> None:
     world = World(limits=Limits(speed_limit=50 / 3.6))
     road = made_from(drafted(line, seed, world), world)
     assert judge(road, simulate(road, world, "reference", seed), world).kept
+
+
+@pytest.mark.parametrize(("kind", "arms"), [("t_junction", 3), ("crossroads", 4)])
+def test_a_village_has_the_blocks_and_dead_ends_that_eulers_formula_allows(kind: str, arms: int) -> None:
+    """A connected map of roads has one more road than junctions for each block: with ``ends`` arms of
+    n junctions left open, (arms n - ends) / 2 roads join the others. A road never leads back to its own
+    junction."""
+    for n, blocks, ends in product((1, 2, 3), (*range(6), None), (*range(7), None)):
+        free = [each for each in range(arms * n + 1) if not (arms * n - each) % 2]
+        found = {((arms * n - each) // 2 - n + 1, each) for each in free}
+        can = {(block, end) for block, end in found if block >= 0 and (n > 1 or block == 0)}
+        is_possible = any(blocks in (None, block) and ends in (None, end) for block, end in can)
+        wishes = (
+            f"blocks={blocks}" if blocks is not None else "",
+            f"dead_ends={ends}" if ends is not None else "",
+        )
+        line = " ".join(filter(None, (f"map {kind} x{n}", *wishes)))
+        if is_possible:
+            check(read_plan(line), map_size=None)
+        else:
+            with pytest.raises(BriefError, match="no map can be built as"):
+                check(read_plan(line), map_size=None)

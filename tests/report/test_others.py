@@ -9,7 +9,7 @@ from matplotlib.patches import Polygon
 
 from roadgpt.report import birds_eye
 from roadgpt.report.canvas import encoded
-from roadgpt.report.others import COLOURS, moment_of
+from roadgpt.report.others import COLOURS, _corners_at, moment_of, step_at
 from roadgpt.report.view import _closest
 from roadgpt.road import Road, World
 from roadgpt.run import Request, Run, Setup
@@ -148,3 +148,14 @@ def test_the_page_names_whom_the_car_is_about_to_touch_and_where_it_touched_him(
     (place,) = told["contacts"]
     assert place["time"] == pytest.approx(hit.at_time, abs=2e-3)
     assert (place["x"], place["y"]) == pytest.approx(hit.contact.xy, abs=0.02)
+
+
+def test_a_contact_at_the_very_beginning_is_drawn_where_the_car_started(crash: Run) -> None:
+    """There is no step before the first one; the car is then drawn where it was, or on its way back."""
+    assert crash.drive is not None
+    first, second = crash.drive.corners(0), crash.drive.corners(1)
+    assert _corners_at(crash, 0.0) == pytest.approx(first)
+    assert _corners_at(crash, float(crash.drive["time"][1])) == pytest.approx(second)
+    early = _corners_at(crash, -0.001)
+    assert np.abs(early - first).max() < np.abs(second - first).max()
+    assert [step_at(crash, time) for time in (-1.0, 0.0, 1e6)] == [0, 0, len(crash.drive) - 1]
