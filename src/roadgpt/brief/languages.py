@@ -55,7 +55,6 @@ def with_plain_numbers(text: str) -> str:
 
 def _without_thousands(number: str, mark: str) -> str:
     marks = re.sub(r"\d", "", number)
-    if len({*marks}) == 2 and marks.count(marks[-1]) == 1:
-        return number.replace(marks[0], "")
-    is_of_thousands = marks[1:] or marks == mark
-    return number.replace(marks[0], "") if len({*marks}) == 1 and is_of_thousands else number
+    first, last = marks[0], marks[-1]
+    are_thousands = marks.count(last) == 1 if first != last else len(marks) > 1 or marks == mark
+    return number.replace(first, "") if are_thousands else number

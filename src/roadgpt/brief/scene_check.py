@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from math import inf
 
-from roadgpt.brief.junctions import LANE_KINDS, RAMPS
+from roadgpt.brief.junctions import LANE_KINDS
 from roadgpt.brief.model import Brief, span
 from roadgpt.brief.outline import outline
 from roadgpt.brief.scene import FLOWS, LEAVES, Scene, Where
@@ -14,12 +14,8 @@ NEEDS: Mapping[Where, str] = {
     "lane": "two lanes in its direction; write lanes=2",
     "far": "three lanes in its direction; write lanes=3",
     "oncoming": "an oncoming lane; write for example against=1",
-    "ramp": "a ramp; write for example merge ramp",
-    "junction": "a junction; write for example crossroads straight",
-    "roundabout": "a roundabout; write for example roundabout exit=2",
-    "crosswalk": "a crosswalk; write crosswalk behind a junction",
 }
-"""What somebody needs of the road where it is at first, and how to ask for it."""
+"""What somebody needs of the lanes where it is at first, and how to ask for it."""
 
 
 def check_scene(scene: Scene, brief: Brief) -> None:
@@ -36,14 +32,9 @@ def _faults(scene: Scene, brief: Brief) -> Iterator[str]:
     counts: dict[str, float] = {}
     if brief.map is None:
         places = [place for place in brief.junctions if place.kind not in LANE_KINDS]
-        kinds = {place.kind for place in places}
-        has |= {"ramp": bool(kinds & {*RAMPS}), "junction": bool(kinds - {*RAMPS})}
-        has |= {"roundabout": "roundabout" in kinds, "crosswalk": any(place.crosswalk for place in places)}
         turns = sum(outline(road.as_stretch).turns.hi for road in roads)
         counts = {"junction": len(places), "turn": turns}
-    lacks = {name: need for name, need in NEEDS.items() if not has.get(name, True)}
-    if scene.turn and "junction" in lacks:
-        yield f"the tested car that goes {scene.turn} at a junction needs {lacks['junction']}"
+    lacks = {name: need for name, need in NEEDS.items() if not has[name]}
     if scene.oncoming in FLOWS and is_one_way:
         yield f"oncoming traffic needs {lacks['oncoming']}"
     for role in scene.actors:
