@@ -180,6 +180,7 @@ def test_who_leaves_the_next_lane_away_from_the_tested_car_gets_a_lane_to_go_to(
     said = read_scene("car lane left: change_lane left")
     assert said.lanes_needed(left_hand=False) == 3
     assert read_scene("car lane left: change_lane right").lanes_needed(left_hand=False) == 2
+    assert read_scene("car lane left: cut_in, change_lane left").lanes_needed(left_hand=False) == 2
     with pytest.raises(BriefError, match="needs 3 lanes"):
         read("| lanes=2 && car lane left: change_lane left", "plan", map_size=None)
 

@@ -493,7 +493,7 @@ class Scene(Frozen):
             needs = [(away, role.side)]
             if role.where in ("ahead", "behind"):
                 needs += [(1, side) for side in leave]
-            elif away and role.side in leave:  # farther away
+            elif away and role.side in leave and all(each.what != "cut_in" for each in role.actions):
                 needs += [(away + 1, role.side)]
             for count, side in needs:
                 side = "right" if side == "right" else "left"
