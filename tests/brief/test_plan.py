@@ -1,14 +1,15 @@
 """The one-line language of a Brief, its normal form, and the sentence in which it says itself."""
 
+from contextlib import suppress
 from typing import get_args
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roadgpt.brief.model import Brief, Clause, at_least, exactly
+from roadgpt.brief.model import Brief, Clause, Kind, at_least, exactly
 from roadgpt.brief.normal import normal
-from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.plan import CLAUSE, plan, read_plan
 from roadgpt.brief.sentence import sentence
 from roadgpt.brief.words import Compass
 from roadgpt.errors import BriefError
@@ -95,6 +96,19 @@ def test_everything_has_a_sentence(brief: Brief) -> None:
     assert said[0] == "A"
     assert "None" not in said
     assert "  " not in said
+
+
+@pytest.mark.parametrize("kind", get_args(Kind))
+@pytest.mark.parametrize("count", ["", " x3"])
+def test_each_word_that_means_something_is_in_the_sentence(kind: str, count: str) -> None:
+    without = normal(read_plan(f"{kind}{count}"))
+    means_something = 0
+    for word in (*CLAUSE.words, "90", "r30", "len=50", "climb=4", "pct=5"):
+        with suppress(BriefError):
+            brief = normal(read_plan(f"{kind}{count} {word}"))
+            means_something += brief != without
+            assert (sentence(brief) != sentence(without)) == (brief != without), word
+    assert means_something
 
 
 @pytest.mark.parametrize(("one", "other"), rows(__file__, "same"))

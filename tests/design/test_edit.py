@@ -1,5 +1,6 @@
 """Edits of a Design: what is asked for is measured afterwards, and nothing else is touched."""
 
+import json
 from contextlib import suppress
 from dataclasses import replace
 
@@ -18,6 +19,7 @@ from roadgpt.design.edit import Edited, edit
 from roadgpt.design.road_elements import elements_on_road, joined
 from roadgpt.errors import EditError
 from roadgpt.road import Design, Geometry, Segment, Site, World, build, in_short_segments
+from roadgpt.road.design import read_design
 from tables import rows
 
 WORLD = World()
@@ -170,6 +172,13 @@ def test_any_edit_gives_a_valid_road_or_a_reason(seed: int, some: list[str]) -> 
         assert made.changes
         assert made.design != design
     assert design == before
+
+
+@pytest.mark.parametrize("plan", ["road: mirror", *(f"turn {n}: mirror" for n in (1, 2, 3)), *CHANGES])
+def test_an_edited_road_is_read_back_from_its_file_as_it_is(plan: str) -> None:
+    with suppress(EditError):
+        after = changed("r01", plan)
+        assert read_design(json.loads(json.dumps(after.to_json()))) == (after, ())
 
 
 def test_a_segment_without_a_radius_keeps_what_its_writer_left_open() -> None:

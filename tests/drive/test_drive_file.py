@@ -30,6 +30,17 @@ def test_a_saved_drive_comes_back(tmp_path):
         np.testing.assert_array_equal(back[name], drive[name])
 
 
+def test_a_file_of_earlier_days_is_still_a_drive(tmp_path):
+    """Version 2, written by hand; of the car it has what its first files had."""
+    header = {"format": 2, "driver": "mine", "simulator": "mujoco", "seed": 5, "ended": "goal"}
+    header["car"] = {"length": 4.7, "width": 1.86}
+    columns = {name: np.arange(3.0) for name in COLUMNS}
+    np.savez(tmp_path / "drive.npz", header=np.array(json.dumps(header)), **columns)
+    back = Drive.load(tmp_path / "drive.npz")
+    assert (back.driver, back.seed, back.ended, back.car) == ("mine", 5, "goal", Box(4.7, 1.86))
+    np.testing.assert_array_equal(back["speed"], [0.0, 1.0, 2.0])
+
+
 def test_columns_cannot_be_written_and_do_not_share_memory():
     source = np.zeros(3)
     columns = Columns({"x": source})

@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Literal
 
 import pytest
 from click.testing import CliRunner
@@ -13,7 +14,7 @@ from roadgpt import plugins
 from roadgpt.cli import app
 from roadgpt.export import doubts
 from roadgpt.network import read_road
-from roadgpt.road import Profile, Road
+from roadgpt.road import Design, Profile, Road, Segment, build
 
 ROUTE = passing("crossroads", "left")
 
@@ -34,6 +35,18 @@ def test_roads_that_every_format_can_show_raise_no_doubt(name: str) -> None:
 )
 def test_what_a_format_has_no_place_for_is_said(format_: str, road: Road, words: str) -> None:
     assert any(words in each for each in doubts(road, [format_], WORLD))
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+@pytest.mark.parametrize("name", sorted(plugins.names("exporters")))
+def test_a_bend_to_either_side_raises_the_same_doubts(name: str, side: Literal["left", "right"]) -> None:
+    """A bend of 14 m of radius, between straights, with 19 m of lane and shoulder on both sides."""
+    turn = Segment(distance=17, direction=side, turn_degrees=70 if side == "left" else -70)
+    straight = Segment(distance=40, direction="straight")
+    road = build(Design(starting_point=(0, 0, 0), theta=0, segments=(straight, turn, straight)))
+    said = doubts(road.with_profile(Profile.of(1, 1, 4.0, 15.0)), [name], WORLD)
+    assert any("no room for the shoulders" in each for each in said) == (name == "crg")
+    assert any("at s = " in each for each in said) == (name not in ("csv", "sbft"))
 
 
 def test_the_command_says_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
