@@ -41,6 +41,22 @@ def test_the_tightest_turn_is_that_of_the_world() -> None:
     assert read("a turn with a radius of 8 m", min_radius=5.0).clauses[0].radius == exactly(8)
 
 
+@pytest.mark.parametrize("forks", range(4))
+@pytest.mark.parametrize("crossings", range(4))
+def test_dead_ends_are_possible_as_euler_has_it(forks: int, crossings: int) -> None:
+    """Each road has two ends, so arms and dead ends together are even; a tree of junctions has the most."""
+    junctions, arms = forks + crossings, 3 * forks + 4 * crossings
+    named = [f"{kind} x{n}" for kind, n in (("t_junction", forks), ("crossroads", crossings)) if n]
+    for ends in range(arms + 2) if junctions else ():
+        fits = (arms + ends) % 2 == 0 and ends <= arms - 2 * (junctions - 1)
+        brief = read_plan(f"map {'; '.join(named)} dead_ends={ends}")
+        if fits and (junctions > 1 or ends == arms):  # no road leads back to its own junction
+            check(brief)
+        else:
+            with pytest.raises(BriefError, match="can be built as"):
+                check(brief)
+
+
 @pytest.mark.parametrize("words", rows(__file__, "map_holds_refused"))
 def test_what_no_map_holds_is_refused_on_every_map(words: str) -> None:
     with pytest.raises(BriefError):

@@ -15,10 +15,11 @@ from roadgpt.brief.plan import read_plan
 from roadgpt.brief.ranges import Range
 from roadgpt.check.measures import measure
 from roadgpt.design import draft, road_search
+from roadgpt.design.elements import elements_of
 from roadgpt.design.vertical import softened
 from roadgpt.drive.driving_line import line_along
 from roadgpt.errors import DesignError
-from roadgpt.road import Design, Limits, World, build
+from roadgpt.road import Design, Limits, Segment, World, build
 from roadgpt.road.design import vertical_curves
 from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 from tables import rows
@@ -115,3 +116,20 @@ def test_hairpins_on_a_level_road_stay_level() -> None:
     brief = Brief(clauses=(Clause(kind="hairpin", count=exactly(3)),), slope="flat")
     grade = build(draft(brief, WORLD, seed=1)).sample().grade
     assert np.abs(grade).max() < 0.01
+
+
+@given(
+    st.lists(
+        st.tuples(st.sampled_from([0.0, 3.0, -5.0]), st.sampled_from([0, 0, 40, -60])), min_size=1, max_size=8
+    )
+)
+def test_elements_climb_as_the_segments_of_which_they_are_made(row: list[tuple[float, float]]) -> None:
+    sides = {0: "straight", 40: "left", -60: "right"}
+    segments = [Segment(distance=30, direction=sides[t], turn_degrees=t, incline=i) for i, t in row]
+    elements = elements_of(segments)
+    ends = [np.cumsum([0.0, *(each.length for each in elements)])]
+    ends += [np.cumsum([0.0, *(each.length * each.incline / 100 for each in elements)])]
+    at = 30.0 * np.arange(len(row) + 1)
+    assert ends[0][-1] == pytest.approx(at[-1])
+    assert np.interp(at, *ends) == pytest.approx(np.cumsum([0.0, *(0.3 * i for i, _ in row)]))
+    assert sum(each.turn for each in elements) == pytest.approx(sum(t for _, t in row))

@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from roadgpt.geometry import CubicProfile, GradeProfile, shifted
+from roadgpt.geometry.elevation import closed
 
 
 @st.composite
@@ -92,3 +93,27 @@ def test_what_lies_farthest_outside_a_range_is_found(
 
 
 CUBIC = (1.0, 0.0, 0.0, 0.0)
+
+
+@given(
+    st.lists(st.tuples(*[st.integers(-4, 4).map(lambda n: n / 8)] * 4), min_size=1, max_size=4),
+    st.floats(0.05, 1.0),
+)
+def test_a_profile_ends_with_its_road(cubics: list[tuple[float, float, float, float]], share: float) -> None:
+    """Rows from the end of the road on say nothing of it: at the end is what the row before it leads to."""
+    starts = [5.0 * n for n in range(len(cubics))]
+    end = 5.0 * len(cubics) * share
+    for more in (
+        [],
+        [(end, (9.0, 0.0, 0.0, 0.0))],
+        [(end, (9.0, 1.0, 0.0, 0.0)), (end + 1, (7.0, 0.0, 0.0, 0.0))],
+    ):
+        known = [row for row in zip(starts, cubics, strict=True) if row[0] < end - 0.01]
+        profile = closed([*known, *more], end)
+        at = np.array([*np.linspace(0.0, end, 9), end + 3.0])
+        row = [max(n for n, (start, _) in enumerate(known) if start <= min(s, end - 1e-6)) for s in at]
+        wanted = [
+            np.polynomial.Polynomial(known[n][1])(min(s, end) - known[n][0])
+            for n, s in zip(row, at, strict=True)
+        ]
+        assert profile.height(at) == pytest.approx(wanted, abs=1e-6)

@@ -285,6 +285,29 @@ def test_a_second_swerve_goes_to_the_other_side(actions: str) -> None:
     assert (left[second] < 0).all()
 
 
+@pytest.mark.parametrize("seconds", [4, 7, 11])
+def test_a_swerve_lasts_as_long_as_told(seconds: float) -> None:
+    left = show(f"car ahead gap=30: swerve for={seconds}").left(0)
+    away = STEP * np.flatnonzero(np.abs(left) > 0.005)
+    assert 0.9 * seconds <= away[-1] - away[0] <= seconds + 0.1  # it leaves and comes back softly
+
+
+@pytest.mark.parametrize("scene", ["car ahead; truck ahead gap=30", "truck ahead gap=30; car ahead"])
+def test_who_is_told_where_to_be_is_there_and_others_make_room(scene: str) -> None:
+    seen = show(scene, lasts=0.2)
+    truck = [actor.kind for actor in seen.actors].index("truck")
+    assert seen.gap(truck)[0] == pytest.approx(30, abs=0.05)
+
+
+@pytest.mark.parametrize(("kind", "speed"), [("cones", ""), ("truck", " v=0"), ("adult", " v=0")])
+@pytest.mark.parametrize("doing", ["", ": swerve time=15"])
+def test_who_comes_upon_somebody_who_stands_stops_behind_them(doing: str, kind: str, speed: str) -> None:
+    seen = show(f"car ahead gap=20 v=40{doing}; {kind} ahead gap=80{speed}", lasts=12, speed=lambda _: 4.0)
+    apart = seen.along(1) - seen.along(0) - (seen.actors[0].size.length + seen.actors[1].size.length) / 2
+    assert 0.0 < apart[-1] < 3.0
+    assert apart.min() > 0.0
+
+
 @pytest.mark.parametrize("later", ["turn_across", "cross", "run_light", "merge"])
 def test_who_drives_ahead_cannot_do_later_what_needs_a_way_of_its_own(later: str) -> None:
     with pytest.raises(ValueError, match=f"who is ahead cannot {later}; that begins from"):
