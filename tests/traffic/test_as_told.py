@@ -3,8 +3,14 @@ scene puts it."""
 
 import numpy as np
 import pytest
+from shapely import Polygon
 
+from roadgpt.errors import BriefError
+from roadgpt.road.road import START
 from roadgpt.run import Run, Setup, perform
+from roadgpt.traffic import STEP, Traffic
+from roadgpt.traffic.actor import SIZES, corners
+from roadgpt.traffic.rehearsal import rehearsed
 
 
 def drive(plan: str, driver: str = "reference", seed: int = 1) -> Run:
@@ -121,3 +127,110 @@ def test_who_comes_from_behind_hits_the_rear_of_a_car_that_stands_and_stops_ther
         heading
     )
     assert -4.9 < apart[-1] < -3.0  # as far as it came in the step of the contact
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        "crossroads straight && car junction left: cross; car junction opposite: turn_across",
+        "crossroads straight && van junction left v=30; motorcycle junction right v=50",
+        "straight 300 | lanes=2 && ego v=10; truck lane left v=80; adult lane left v=3: keep",
+    ],
+)
+def test_others_do_not_run_into_each_other_where_their_ways_cross(scene: str) -> None:
+    others = rehearsal(scene)[0].tracks()
+    for states in others.states:
+        there = np.flatnonzero(~np.isnan(states[:, 0]))
+        boxes = [Polygon(corners(states[n], others.actors[n].size)) for n in there]
+        assert not any(one.intersects(other) for n, one in enumerate(boxes) for other in boxes[:n])
+
+
+def rehearsal(plan: str, seed: int = 1) -> tuple[Traffic, Run]:
+    """Returns the others of a scene as they drive with the test robot, and the road without a drive."""
+    run = perform(plan, seed, setup=Setup(reader="plan", drives=False))
+    assert run.road is not None
+    traffic = rehearsed(run.road, run.world, run.seed)
+    assert traffic is not None
+    return traffic, run
+
+
+@pytest.mark.parametrize(
+    "plan",
+    [
+        "straight 60 && car ahead: brake",
+        "turn x2 && car oncoming: drift before turn 1",
+        "&& car lane left: keep 3, cut_in thw=1",
+        "&& ego v=0; truck behind v=0",
+        "straight 300 && ego v=0; car crossing left: cross",
+        "straight 100 && adult crossing right",
+        "straight 300 && ego v=30; child crossing left v=3: cross 10, stop",
+        "turn right 60 r=60; straight 120 && car x2 parked left s=40: pull_out",
+        "crossroads straight && ego v=120; child crossing right v=3 away=8: cross; car junction right: cross",
+        "t_junction straight ways=right+straight && truck junction v=50: turn_in 20",
+        "crossroads straight && car behind v=30: follow time=8",
+        "straight 200 && ego v=30; car ahead; oncoming light",
+        "straight 400 // diverge && car oncoming",
+    ],
+)
+def test_what_is_told_happens_on_the_road_that_is_made_for_it(plan: str) -> None:
+    traffic, _ = rehearsal(plan)
+    assert traffic.missed == ()
+
+
+@pytest.mark.parametrize("seconds", [1, 2, 4, 8])
+@pytest.mark.parametrize("who", ["adult crossing right v=5", "bicycle crossing left v=15"])
+def test_a_crossing_begins_at_its_time_to_collision(who: str, seconds: int) -> None:
+    """From beside the lanes, however little time that leaves; farther away where it leaves more."""
+    traffic, run = rehearsal(f"straight 300 && ego v=36; {who}: cross ttc={seconds}")
+    track = traffic.tracks().states[:, 0]
+    begins = int(np.flatnonzero(np.hypot(*(track[:, :2] - track[0, :2]).T) > 1e-3)[0]) - 1
+    assert run.road is not None
+    own, aside = (float(each) for each in run.road.locate(*track[0, :2]))
+    front = min(START, run.road.length / 2) + 10.0 * begins * STEP + SIZES["car"].length / 2
+    assert own - front == pytest.approx(10.0 * seconds, abs=2.0)  # to the middle of the path, within a box
+    assert abs(aside) > 4.0  # the lanes are 4 m wide
+
+
+def test_who_comes_along_another_road_is_as_far_away_as_the_scene_says_and_crosses_in_time() -> None:
+    traffic, run = rehearsal("crossroads straight && car junction left v=30 away=20")
+    track, road = traffic.tracks().states[:, 0], run.road
+    assert road is not None
+    t = np.array([float(road.locate(*each)[1]) for each in track[:, :2]])
+    middle = float(run.world.profile_of(road).middle(0.0))
+    assert t[0] - middle == pytest.approx(20.0, abs=0.5)
+    assert t[-1] < middle - 5.0
+    assert [*traffic.happened] == ["car 1 crosses"]
+
+
+def test_who_is_in_another_lane_stays_there_where_the_route_changes_lanes() -> None:
+    ways = "| lanes=2 len=60 // lane_change left // | len=250"
+    traffic, run = rehearsal(f"{ways} && ego v=50; truck lane left v=50 lead=40; car oncoming gap=120 v=20")
+    road = run.road
+    assert road is not None
+    for n, states in enumerate(traffic.tracks().states.swapaxes(0, 1)):
+        there = states[~np.isnan(states[:, 0])]
+        t = [float(road.locate(*each)[1]) for each in there[:, :2]]
+        assert np.ptp(t) < 0.1, n
+        course = np.arctan2(*np.diff(there[:, :2], axis=0).T[::-1])
+        assert np.abs(np.angle(np.exp(1j * (course - there[1:, 3])))).max() < 0.05, n
+
+
+def test_a_speed_that_a_bend_does_not_give_is_said() -> None:
+    traffic, _ = rehearsal("straight 60; turn left 90 r=20; straight 60 && ego v=20; car ahead gap=30 v=90")
+    assert "car 1 is slower than 90 km/h where it comes to a bend" in traffic.limited
+
+
+@pytest.mark.parametrize(
+    ("plan", "said"),
+    [
+        ("straight 200 && truck oncoming gap=60 v=0: overtake time=3", "stands, so it never overtakes"),
+        ("crossroads straight && car junction left away=190", "begins less than 190 m from the tested car's"),
+    ],
+)
+def test_what_cannot_be_is_refused_with_its_reason(plan: str, said: str) -> None:
+    assert said in perform(plan, 1, setup=Setup(reader="plan", driver="robot")).description
+
+
+def test_the_roads_of_a_map_have_one_lane_in_each_direction() -> None:
+    with pytest.raises(BriefError, match="needs two lanes in its direction; the roads of a map have one"):
+        perform("map columns=2 rows=2 && car ahead: change_lane", 1, setup=Setup(reader="plan", drives=False))

@@ -26,7 +26,7 @@ def check_scene(scene: Scene, brief: Brief) -> None:
 
 def _faults(scene: Scene, brief: Brief) -> Iterator[str]:
     roads = brief.stretches or (brief,)
-    along = max(span(road.lanes).hi for road in roads)
+    along = 1 if brief.map is not None else max(span(road.lanes).hi for road in roads)
     is_one_way = all((road.lanes_text or "1+1").endswith("+0") for road in roads)
     has = {"lane": along >= 2, "far": along >= 3, "oncoming": not is_one_way}
     counts: dict[str, float] = {}
@@ -35,6 +35,9 @@ def _faults(scene: Scene, brief: Brief) -> Iterator[str]:
         turns = sum(outline(road.as_stretch).turns.hi for road in roads)
         counts = {"junction": len(places), "turn": turns}
     lacks = {name: need for name, need in NEEDS.items() if not has[name]}
+    if brief.map is not None:
+        one = "; the roads of a map have one"
+        lacks = {name: need.partition(";")[0] + one for name, need in lacks.items()}
     if scene.oncoming in FLOWS and is_one_way:
         yield f"oncoming traffic needs {lacks['oncoming']}"
     for role in scene.actors:
@@ -44,7 +47,7 @@ def _faults(scene: Scene, brief: Brief) -> Iterator[str]:
             yield f"'{role}' needs {need}"
         leaves = role.where in ("ahead", "behind") and any(each.what in LEAVES for each in role.actions)
         if leaves and along < 2:
-            yield f"'{role}' needs {NEEDS['lane']}"
+            yield f"'{role}' needs {lacks['lane']}"
         for mark in role.marks:
             if mark.number > (count := counts.get(mark.of, inf)):
                 yield f"'{role}' needs {mark.of} {mark.number}, and there are {count:g}; change one of them"

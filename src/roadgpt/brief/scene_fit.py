@@ -57,6 +57,7 @@ def fitted(brief: Brief, scene: Scene, limit: float, map_size: float | None = No
         comes_to_junction(role) or role.where in ("roundabout", "crosswalk") for role in scene.actors
     )
     first, *others = brief.stretches
+    behind = before - ROLLS * speed - JUNCTION  # what may be needed of the road behind a junction
     junctions = list(brief.junctions)
     if at_junction and places:
         crosses = any(role.where == "crosswalk" for role in scene.actors)
@@ -72,6 +73,9 @@ def fitted(brief: Brief, scene: Scene, limit: float, map_size: float | None = No
             if not (is_straight or place.kind in LANE_KINDS):
                 break
             before -= min(_length(road).hi + JUNCTION, before)
+    late = [each for role in scene.actors for each in role.actions if each.time or each.distance]
+    if late or any(role.where in ("crossing", "beside") for role in scene.actors):
+        others[0] = _as_long(others[0], min(behind, _length(others[0]).hi))
     stretches = (_suited(first, scene, lanes, speed, until, before), *others)
     return brief.model_copy(update={"stretches": stretches, "junctions": tuple(junctions)})
 
@@ -87,7 +91,8 @@ def _until_stop(scene: Scene, speed: float, brief: Brief) -> float:
     named = [role.station for role in roles] + [each.station for role in roles for each in role.actions]
     named += [each.station for each in scene.slippery]
     named += [role.gap for role in roles if role.where == "oncoming"]
-    least = FOR_FLOW if scene.has_flow else 0.0
+    longest = max(_length(road).hi for road in brief.stretches or (brief,))
+    least = FOR_FLOW if scene.has_flow and longest > FOR_FLOW + SPARE + speed**2 / 2 / STOPS else 0.0
     return max(max(seconds) * speed, *map(_most, named), least) + sum(map(_row, roles)) + SPARE
 
 
@@ -127,8 +132,10 @@ def _lasts(role: Role, speed: float, across: float) -> float:
     meets = gap / closing if closing > 1.0 and role.where in ("ahead", "lane", "far", "oncoming") else 0.0
     if role.where in ACROSS and own > 0:
         own = span(role.speed).lo / KMH if role.speed and role.speed.lo else own
+        own = _most(role.actions[0].to) / KMH or own if role.actions else own
         rates = [abs(_most(each.accel)) for each in role.actions if each.accel]
         walks = (_most(role.away) or across) / own + sum(own / 2 / rate for rate in rates if rate)
+        walks = _most(role.actions[0].ttc) or walks if role.actions else walks
         meets = max(ROLLS + 2.0, walks + 1.0)  # they are never there sooner
     lasts, now = max((_most(each.time) for each in role.actions), default=0.0) or ROLLS, own
     for action in role.actions:
@@ -180,12 +187,18 @@ def _long_enough(
     lanes = max(lanes, LANES_OF_MOTORWAY) if road.motorway and road.lanes is None else lanes
     if lanes > 1 and span(road.lanes).lo < lanes <= span(road.lanes).hi:
         road = road.model_copy(update={"lanes": Amount(lo=lanes, hi=road.lanes and road.lanes.hi)})
-    have, metres = _length(road), float(ceil(metres / 10) * 10)
-    if have.hi < metres and scene.speed is not None:
+    have, need = _length(road), ceil(metres / 10) * 10
+    if have.hi < need and scene.speed is not None:
         raise BriefError(
-            f"at {KMH * speed:.0f} km/h the scene needs {metres:.0f} m of road to begin, to happen and to"
+            f"at {KMH * speed:.0f} km/h the scene needs {need} m of road to begin, to happen and to"
             f" stop, and {have.hi:g} m are asked for; ask for a longer road, or for a slower car"
         )
+    return _as_long(road, metres)
+
+
+def _as_long(road: Brief, metres: float) -> Brief:
+    """Asks of a road for a length in metres, if it can have that."""
+    have, metres = _length(road), float(ceil(metres / 10) * 10)
     if have.lo >= metres or have.hi < metres:
         return road
     return road.model_copy(update={"length": Amount(lo=metres, hi=road.length and road.length.hi)})

@@ -82,6 +82,9 @@ def _with_lanes(brief: Brief, scene: Scene) -> Brief:
         first = first.model_copy(update={"lanes": at_least(2)})
     roads, has_ramp = [first, *rest], any(place.kind in RAMPS for place in brief.junctions)
     if comes and not any(place.take == "ramp" for place in brief.junctions):
+        main = {"take": "main"}  # ramps have no oncoming lanes
+        places = [place.model_copy(update=main if place.kind in RAMPS else {}) for place in brief.junctions]
+        brief = brief.model_copy(update={"junctions": tuple(places)})
         for n, road in enumerate(roads):
             if (road.motorway or has_ramp) and road.against is None:
                 roads[n] = road.model_copy(update={"divided": True})

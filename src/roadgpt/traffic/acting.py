@@ -8,6 +8,7 @@ greatest speed that its action says."""
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import takewhile
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from roadgpt.brief.scene import (
     CUES,
     DOINGS,
     HEAD_ON,
+    LEAVES,
     MOVING,
     NUMBERS,
     ON_ITS_WAY,
@@ -34,11 +36,12 @@ from roadgpt.brief.scene import (
 from roadgpt.errors import SceneError
 from roadgpt.road.road import GOAL
 from roadgpt.road.speed_profile import GRAVITY
-from roadgpt.traffic.actor import SIZES, STEP
+from roadgpt.traffic.actor import SIZES, STEP, STILL
 from roadgpt.traffic.following import AFTER_CONTACT, HARDEST, JAM, idm, time_over
+from roadgpt.traffic.lane_map import LEAST
 from roadgpt.traffic.places import offset_of, stretch_of
 from roadgpt.traffic.traffic import Stage
-from roadgpt.traffic.way import GRIP, LEAST_GRIP, Way
+from roadgpt.traffic.way import GRIP, LEAST_GRIP, SPACING, Way
 from roadgpt.traffic.ways import way_of
 
 ROLL = 4.0  # s, after which the first action begins whose begin the scene leaves open
@@ -64,6 +67,7 @@ BEHIND = 1.5  # s, of who is behind, and of several alike one behind another
 BEYOND = 50.0  # m before the begin and behind the end of the road, where who drives along it is still there
 INTO = 1.0  # s of headway with which one turns in or merges ahead of the tested car
 STANDS = 2.0  # m between several alike that stand
+FARTHEST = 60.0  # m, from which somebody comes to cross at a time to collision that is said
 ONCOMING = 40.0  # m between several alike that come towards the tested car
 NEAR = 10.0  # m before the meeting, where a vehicle waits at a junction
 LATERAL: Mapping[What, float] = {
@@ -211,11 +215,15 @@ class Act:
         self.cruise = self._cruise()
         """The speed that it is to have when it meets the tested car."""
         self.deeds = [self._deed(*each) for each in zip(role.actions, numbers, strict=True)]
-        if not self.deeds and self.where in CROSSINGS:
+        comes = self.where == "junction" and "away" in self.n
+        if not self.deeds and (comes or self.where in CROSSINGS):
             self.deeds = [Deed(Action(what="cross"), {})]
         whats = [deed.what for deed in self.deeds]
-        self.first = whats[0] if whats else None
-        self.cue = self.deeds[0].n if self.deeds else dict[str, float]()
+        keeps = [*takewhile(lambda deed: deed.what == "keep" and deed.is_open, self.deeds)]
+        self.lead = next(iter([*self.deeds[len(keeps) :], *self.deeds]), None)
+        """Its first action, or that behind those in which it keeps its speed."""
+        self.first = self.lead.what if self.lead else None
+        self.cue = self.lead.n if self.lead else dict[str, float]()
         crosses = self.where == "beside" and not {"cross", "turn_in"}.isdisjoint(whats)
         self.crosses = crosses or self.where in CROSSINGS
         is_along = self.where in (*ALONG, "parked", "beside") and role.goes != "turn_across"
@@ -225,12 +233,16 @@ class Act:
         """1 along its way, -1 against it."""
         stands = self.kind not in MOVING or self.where == "parked" or self.crosses
         stands |= self.where == "beside" and "speed" not in self.n
+        stands |= comes
         if stands and self.deeds:  # where it begins to act is where it is
             self.n |= {"station": self.cue.pop("station")} if "station" in self.cue else {}
             if self.is_along and self.deeds[0].is_open:
                 self.cue["ttc"] = LAST
         self.v = v = 0.0 if stands or self.n.get("speed") == 0 else self.cruise
         self.slide: Slide | None = None
+        self.limited: dict[int, tuple[str, bool]] = {}
+        """Of the actions that ask for more than there is, in words with how much less they were done, and
+        whether the scene says the number and the road does not give it; -1 is its speed."""
         self.way, self.shift, self.t = path, 0.0, 0.0
         """From a station of its way, ``shift`` leads to that of the tested car's lane beside it; ``t`` is how
         far it is to the left of its way."""
@@ -246,6 +258,9 @@ class Act:
         left = (path.length - GOAL - car.s) / max(car.v, 1.0)
         if left < self.rolls + SETTLED:  # the drive is over before
             self.rolls = max(left, 0.0) / 2
+        keeps = [each for each in keeps if each is not self.lead]
+        self.settles = self.rolls + sum(each.n.get("duration", ROLL) for each in keeps)
+        """After how many seconds that begins if nothing is said."""
         self.is_placed = bool(role.at) or not {*PLACES}.isdisjoint(self.n)
         """Whether the scene says where it is at first."""
         if self.is_along:
@@ -262,6 +277,8 @@ class Act:
                 self.s, self.meeting = self.s - self.shift, crossing
             else:
                 self.meeting, self.s = self._crossing(crossing)
+        self.keeps_lane = abs(self.t) > LEAST / 2
+        """Whether it stays in its lane where the tested car's way changes lanes, and does not go with it."""
         self.waits = v == 0 and not self.is_along
         """Whether it stands until it has to go to be in time for its meeting."""
         self.matches = bool(self.meeting and v and not turns_off)
@@ -269,7 +286,7 @@ class Act:
         self.uncovers = False
         """Whether it leaves its lane in time before those who stand there."""
         self.v = v
-        on_road = BEYOND if v > 0 else 0.01 - self.size.length / 2
+        on_road = BEYOND if v > 0 or self.where == "behind" else 0.01 - self.size.length / 2
         self.beyond = 0.0 if self.way.road_stations is None else on_road
         """How far before the begin and behind the end of its way it is there."""
         self.put(self.s)
@@ -282,9 +299,6 @@ class Act:
         self.pull, self.begun = CHANGE, 0
         self.shown = set[int]()
         """The numbers of the actions that it did while it was there."""
-        self.limited: dict[int, tuple[str, bool]] = {}
-        """Of the actions that ask for more than there is, in words with how much less they were done, and
-        whether the scene says the number and the road does not give it."""
         self.phases: list[Phase] = []
         self.clock, self.slid, self.slope = 0.0, 0.0, 0.0
         self.signs: dict[int, float] = {}
@@ -293,13 +307,22 @@ class Act:
         """Puts it at a station of its way, with a speed that is possible there."""
         self.s = s
         self.held = self.held and (s - self.car.s, self.held[1])
-        self.goal = self.v = min(self.v, self.way.bend(s, self.t, self.forward)[1])
+        self.goal = self.v = min(self.v, self._bend()[1])
+
+    def _bend(self) -> tuple[float, float]:
+        """See ``Way.bend``; notes where it is slower than the scene says."""
+        stretch, fastest = self.way.bend(self.s, self.t, self.forward)
+        told = min(self.v, self.n.get("speed", 0.0))
+        if fastest < told - STILL and (self.way is self.path or not self.time):
+            slower = f" is slower than {3.6 * self.n['speed']:.0f} km/h where it comes to a bend"
+            self.limited.setdefault(-1, (slower, False))
+        return stretch, fastest
 
     def part(self, other: "Act") -> None:
         """Moves it away from another in whose place it would be: in its lane away from the tested car, on a
         way of its own back, or aside if it stands there. Raises SceneError if the scene says where both are.
         """
-        room = self.between(other) + STANDS + BEHIND * self.v
+        room = self.between(other) + STANDS + BEHIND * self.v + (self.v - other.v) ** 2 / 2 / EASY
         if self.meeting and self.waits:
             aside = math.sin(self.path.pose(self.meeting.car)[3] - self.way.pose(self.meeting.own)[3])
             self.t += math.copysign(self.size.width + 0.5, aside)
@@ -317,7 +340,7 @@ class Act:
     def _deed(self, action: Action, n: dict[str, float]) -> Deed:
         if action.at and not action.at.what:
             first, last = stretch_of(action.at, self.road, self.path)
-            before = max(first - 2.0 * self.cruise, 0.0)
+            before = first if self.where == "oncoming" else max(first - 2.0 * self.cruise, 0.0)
             n["station"] = {"after": last, "in": (first + last) / 2, "before": before}[action.at.word]
         return Deed(action, n)
 
@@ -361,7 +384,8 @@ class Act:
             refuse("would be in the tested car at the start; give another gap")
         moves = self.cruise > 0
         for deed in self.deeds:
-            moves = moves or deed.what in ("speed", "overtake", "pull_out")
+            moves = moves or deed.what in ("speed", "pull_out")
+            moves = moves or (deed.what == "overtake" and self.forward > 0)
             moves = moves or max(deed.n.get("to", 0.0), deed.n.get("accel", 0.0)) > 0
             if deed.what in (*LATERAL, "merge") and not moves:
                 refuse(f"stands, so it never {DOINGS[deed.what].said}; give it a speed, or 'accel'")
@@ -374,21 +398,25 @@ class Act:
         """Returns the way of somebody who does not stay along the tested car's lane: to where the tested car
         is when it has rolled for long enough, or to the place that the scene says."""
         front, v, away = self.car.s + self.half, self.car.v, self.n.get("away")
-        if self.crosses and "ttc" in self.cue and away is None:
-            away = min(reach(self.cue["ttc"], 0.0, *self._starts(self.cue)), 60.0)
         near = front + v * (ROLL + HEADWAY if self.crosses else LAST)
         if self.role.at:
             first, last = stretch_of(self.role.at, self.road, self.path)
             before, after = first - self.n.get("gap", EASY * v), last + self.n.get("gap", 0.0)
             near = {"after": after, "in": first, "before": before}[self.role.at.word]
         near = self.n.get("station", near)
+        is_open = self.crosses and "station" not in self.n and not self.role.at
+        last = self.path.length - GOAL - self.size.width  # so that they meet on a short road, too
+        near = min(near, last) if is_open else near
         way = way_of(self.role, self.path.to_road(max(near, 0.0)), self.road, self.world, away)
-        if self.crosses and way.meets and "station" not in self.n and not self.role.at:
-            lasts = time_over(0.0, way.meets[0] + self.car.width / 2, *self._starts(self.cue))
-            later = front + v * (1.0 + lasts)
-            if later > near:
-                return way_of(self.role, self.path.to_road(later), self.road, self.world, away)
-        return way
+        if not self.crosses or way.meets is None:
+            return way
+        begin, starts = way.meets[0], self._starts(self.cue)
+        lasts = self.cue.get("ttc", time_over(0.0, begin + self.car.width / 2, *starts))
+        if "ttc" in self.cue and away is None:
+            away = max(begin, min(reach(lasts, 0.0, *starts), FARTHEST))
+        if is_open:
+            near = max(near, min(front + v * (1.0 + lasts), last))
+        return way_of(self.role, self.path.to_road(max(near, 0.0)), self.road, self.world, away)
 
     def _crossing(self, met: Meeting) -> tuple[Meeting, float]:
         """Returns the meeting of somebody who comes along another way, and the station where it is at first.
@@ -406,13 +434,25 @@ class Act:
         else:
             found = Meeting(met.own - length / 4, met.car - width / 2)
         if self.v == 0:
-            away = self.n.get("away", NEAR)
-            return found, 0.0 if self.crosses else max(met.own - away, length / 2)
+            return found, 0.0 if self.crosses else self._waiting(met)
         if "ttc" in self.cue and self.first in ON_ITS_WAY:  # it comes over the line at that time
             found = found._replace(own=self._over_line(met) + self.v * self.cue["ttc"])
-        found = found._replace(own=found.own - self.copy * (length + STANDS + BEHIND * self.v))
+        self.meeting = found._replace(own=found.own - self.copy * (length + STANDS + BEHIND * self.v))
         eta = (found.car - car.s - car.length / 2) / max(car.v, 1.0)
-        return found, found.own - self.way.before(found.own, self.v, eta)
+        return self.meeting, self.meeting.own - self._planned(eta)
+
+    def _waiting(self, met: Meeting) -> float:
+        """Returns the station of its way where somebody stands at first who comes along another road."""
+        if "away" not in self.n:
+            return max(met.own - NEAR, self.size.length / 2)
+        before = self.way.stations <= met.own
+        far = np.abs(self.path.locate(*self.way.points[before, :2].T)[1]) >= self.n["away"] - SPACING / 2
+        if not far.any():
+            raise SceneError(
+                f"the road of the {self.kind} at the junction begins less than {self.n['away']:g} m from the "
+                "tested car's path; give it less away="
+            )
+        return float(self.way.stations[far.nonzero()[0][-1]])
 
     def _beside(self) -> float:
         """Returns the station along the tested car's lane where somebody is at first who is along it."""
@@ -441,37 +481,45 @@ class Act:
         """Returns the gap of a place or of a condition that is told as a gap or a headway."""
         if "gap" in n or "headway" not in n:
             return n.get("gap")
-        return n["headway"] * (self.v if self.where == "behind" else self.car.v)
+        behind = self.v if self.where == "behind" else self.car.v
+        return n["headway"] * behind or STANDS
 
     def _gap_of_cue(self) -> float:
         """Returns the gap at first of which nothing is said: that its first action begins after ``rolls``."""
         car, cue = self.car, self.cue
         away = self.forward * self.v - car.v
         rate = -away if self.where == "behind" else away
-        slower, said, v = max(-rate, 0.0), self._said_gap(cue), self.v
-        if self.where == "oncoming" and self.first in HEAD_ON and self.deeds[0].is_open:
+        slower, said, v, comes = max(-rate, 0.0), self._said_gap(cue), self.v, LAST
+        if self.where == "oncoming" and self.first in HEAD_ON and self.lead:
             t = self._place(self.where, car.s)
-            aside = abs(self._leads_to(self.deeds[0], car.s, t) - self._aside(car.s))
-            cue["ttc"] = 1.0 + math.pi / 2 * aside / cue.get("lateral", LATERAL[self.deeds[0].what])
+            aside = abs(self._leads_to(self.lead, car.s, t) - self._aside(car.s))
+            comes = 1.0 + math.pi / 2 * aside / cue.get("lateral", LATERAL[self.lead.what])
+            cue |= {"ttc": comes} if self.lead.is_open else {}
+        if self.where == "oncoming" and "station" in cue:  # it is there when they are about to meet
+            gap = cue["station"] - self.half - car.s
+            return max(gap + v * max(gap + rate * comes, 0.0) / max(car.v, 1.0), ONCOMING)
         if "ttc" in cue and rate < 0:
             at = -rate * cue["ttc"]
         elif said is not None or self.first == "cut_in":
             at = CUT_IN if said is None else said
             if self.first == "cut_in":
-                at -= rate * self._until_over_line(self.deeds[0], car.s, self._place(self.where, car.s))
+                assert self.lead is not None
+                at -= rate * self._until_over_line(self.lead, car.s, self._place(self.where, car.s))
         elif self.first == "overtake" and self.forward > 0:
-            closes = max(v - car.v, 0.0) * CLEAR * _slides(self.deeds[0], LANE, self._sideways(car.s))
+            assert self.lead is not None
+            closes = max(v - car.v, 0.0) * CLEAR * _slides(self.lead, LANE, self._sideways(car.s))
             at = max(car.v, closes + STANDS) if self.where == "behind" else -2 * self.half - car.v
         elif self.where == "behind":
             return max(BEHIND * self.v, STANDS)
         elif self.where in ("lane", "far"):
-            return 5.0 - self.half + slower * self.rolls
+            return 5.0 - self.half + slower * self.settles
         elif self.forward < 0:
             at = -rate * LAST
         else:
             stops = slower**2 / 2 / min(EASY, self._room(False, car.s))
             return max(HEADWAY * car.v, slower * self.rolls + stops, STANDS)
-        return at - rate * self.rolls
+        at -= rate * self.settles
+        return max(at, STANDS) if self.where in ("ahead", "behind") else at
 
     def _across(self) -> float:
         """Returns where in the tested car's lane it is, or comes to: see ``overlap`` and ``impact``."""
@@ -576,6 +624,14 @@ class Act:
         """Returns how far its middle is from that of another where their boxes meet in a lane."""
         return (self.size.length + other.size.length) / 2
 
+    def runs_into(self, other: "Act") -> bool:
+        """Returns whether one of them would have to brake hard at first behind the other in its lane."""
+        one, two = (self, other) if self.s < other.s else (other, self)
+        is_behind = self.way is other.way is self.path and self.forward == other.forward > 0
+        is_behind &= abs(self.t - other.t) < (self.size.width + other.size.width) / 2
+        room = two.s - one.s - self.between(other)
+        return is_behind and one.first not in LEAVES and room < max(one.v - two.v, 0.0) ** 2 / 2 / EASY
+
     @property
     def is_gone(self) -> bool:
         """Whether it has left the road, or its way."""
@@ -619,7 +675,8 @@ class Act:
         open when, does so on its path and before the car has passed."""
         if not self.begun or self.state() is None:
             return
-        if self.meeting and not self.is_along and self.deeds[self.begun - 1].is_open:
+        deed = self.deeds[self.begun - 1]
+        if self.meeting and not self.is_along and deed.is_open and deed.what in ON_ITS_WAY:
             left = self.meeting.own - self.s - self.size.length / 2
             if left > self.car.width or self.car.s - self.car.length / 2 > self.meeting.car:
                 return
@@ -657,11 +714,13 @@ class Act:
     def _planned(self, eta: float) -> float:
         """Returns how far it is to be from its meeting so many seconds before it."""
         n = self.cue
-        if not {"to", "accel"} & {*n} or {"time", "gap", "headway"} & {*n}:
+        if not {"to", "accel"} & {*n} or {"station", "gap", "headway"} & {*n}:
             assert self.meeting is not None
             is_along = self.way is self.path
             return self.cruise * eta if is_along else self.way.before(self.meeting.own, self.cruise, eta)
         last, goal = n.get("ttc", LAST), n.get("to", self.cruise)
+        if {"time", "distance"} & {*n}:
+            last = min(max(eta - self.wait(self.deeds[0]), 0.0), eta)
         return self.cruise * (eta - last) + reach(last, self.cruise, goal, abs(n.get("accel", CHANGE)))
 
     def wait(self, deed: Deed) -> float:
@@ -690,10 +749,10 @@ class Act:
             return max(before, room / max(self.v, 1e-3))
         if self.begun:
             return before
-        if self.meeting and self.waits:
+        if self.meeting and self.waits and (car.v > STILL or car.s > self.start + 1.0):
             way = self.forward * (self.meeting.own - self.s)
             return self._eta() - time_over(0.0, max(way, 0.0), *self._starts(n))
-        return soon - LAST if meets else self.rolls - self.time
+        return soon - LAST if meets and not self.waits else self.rolls - self.time
 
     def _until(self, deed: Deed) -> float:
         """Returns in how many seconds a gap, a headway or a time to collision is reached, from either side;
@@ -708,13 +767,13 @@ class Act:
         else:
             behind = self.car.v if self.along > self.car.s else self.v
             aim = n["gap"] if "gap" in n else n["headway"] * behind
-            if not self.begun and not self.is_placed and deed.what in ("cut_in", "cross"):
+            if deed is self.lead and not self.is_placed and deed.what in ("cut_in", "cross"):
                 aim -= rate * self._until_over_line(deed, self.along, self.t)
         off = gap - aim
         first = self.signs.setdefault(self.begun, off)
         if abs(first) < 0.3:
-            return self.rolls - self.time
-        if first * off <= 0:
+            return (self.settles if deed is self.lead else self.rolls) - self.time
+        if first * off <= 0 or ("ttc" in n and off < 0):
             return 0.0
         return -off / rate if off * rate < 0 else math.inf
 
@@ -908,7 +967,7 @@ class Act:
         self.v += math.copysign(pull * speeds_up, self.goal - self.v)
         if speeds_up < time:
             self.v = self.goal
-        stretch, fastest = self.way.bend(self.s, self.t, self.forward)
+        stretch, fastest = self._bend()
         self.v = min(self.v, fastest)
         if self.ahead is not None:
             (gap, speed), most = self.ahead, self._room(False, self.s)
@@ -917,13 +976,18 @@ class Act:
             if safe < abs(self.v):
                 self.v, speeds_up = math.copysign(safe, self.v), time
         gone = (before + self.v) / 2 * speeds_up + self.v * (time - speeds_up)
-        self.s += self.forward * gone / stretch
+        begin, self.s = self.s, self.s + self.forward * gone / stretch
         if self.slide is None:
+            if self.way.aside is not None and self.keeps_lane:
+                aside = np.interp([self.s, begin], self.way.stations, self.way.aside)
+                by = float(np.diff(aside)[0])
+                self.t, self.slope = self.t + by, by / max(abs(self.s - begin), 1e-9)
             return
         self.slid += self._pace(gone / max(time, 1e-9)) * time
         share = self.slid / self.slide.lasts
         if share >= 1.0 - 1e-9:
             self.t, self.slope, self.slide = self.slide.begin + self.slide.by, 0.0, None
+            self.keeps_lane = abs(self.t) > LEAST / 2
             return
         self.t = self.slide.begin + self.slide.by * (1 - math.cos(math.pi * share)) / 2
         aside = math.copysign(self.slide.peak, self.slide.by) * math.sin(math.pi * share)

@@ -4,10 +4,13 @@ import math
 from bisect import bisect_right
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import groupby
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
+from roadgpt.network import is_route
+from roadgpt.network.lanes import lanes_of
 from roadgpt.road.speed_profile import GRAVITY
 from roadgpt.traffic.actor import FloatArray
 
@@ -35,6 +38,8 @@ class Way:
     """For the way along the tested car's own lane: the stations of the points along the tested car's road."""
     friction: FloatArray | float = 1.0
     """The friction, at each point where it is not the same everywhere."""
+    aside: FloatArray | None = None
+    """How far the points are to the left of the lane of the first one, by changes of lanes; None: nowhere."""
 
     @classmethod
     def through(cls, xyz: FloatArray, road_stations: FloatArray | None = None) -> Self:
@@ -48,7 +53,16 @@ class Way:
         """Returns the middle of the lane that the tested car is to follow."""
         s = np.linspace(0.0, road.length, max(int(road.length / SPACING), 1) + 1)
         way = cls.through(road.at(s, world.profile_of(road).middle(s)), s)
-        return replace(way, friction=np.array([world.friction_at(each) for each in s.tolist()]))
+        aside, legs = np.zeros(len(s)), enumerate(road.legs if is_route(road) else ())
+        for _, group in groupby(legs, key=lambda each: each[1].road):
+            (first, leg), *more = group
+            if is_route(road) and more:  # the lane is changed on this road
+                own = (s >= road.starts[first]) & (s <= road.starts[more[-1][0] + 1])
+                left = lanes_of(road.network)[leg].locate(*way.points[own, :2].T)[1]
+                aside[own] += left
+                aside[own.nonzero()[0][-1] + 1 :] += left[-1]
+        friction = np.array([world.friction_at(each) for each in s.tolist()])
+        return replace(way, friction=friction, aside=aside if aside.any() else None)
 
     @cached_property
     def stations(self) -> FloatArray:

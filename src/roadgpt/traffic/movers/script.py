@@ -90,6 +90,8 @@ class Script:
         for act in sorted(acts, key=lambda each: not each.is_placed):
             while inside := next((each for each in placed if _touch(act, each)), None):
                 act.part(inside)
+            while near := next((each for each in placed if not act.is_placed and act.runs_into(each)), None):
+                act.part(near)
             placed.append(act)
         for act in acts:
             act.check()
@@ -182,6 +184,8 @@ class Script:
 def _did(actor: Actor, act: Act, number: int) -> str:
     """Returns in words that somebody does one of its actions."""
     whats = [deed.what for deed in act.deeds[: number + 1]]
+    if number < 0:
+        return actor.name
     return f"{actor.name} {DOINGS[whats[-1]].said}{' again' * (whats.count(whats[-1]) - 1)}"
 
 
