@@ -482,7 +482,7 @@ class Act:
         if "gap" in n or "headway" not in n:
             return n.get("gap")
         behind = self.v if self.where == "behind" else self.car.v
-        return n["headway"] * behind or STANDS
+        return n["headway"] * behind if behind > STILL else STANDS
 
     def _gap_of_cue(self) -> float:
         """Returns the gap at first of which nothing is said: that its first action begins after ``rolls``."""
@@ -979,8 +979,7 @@ class Act:
         begin, self.s = self.s, self.s + self.forward * gone / stretch
         if self.slide is None:
             if self.way.aside is not None and self.keeps_lane:
-                aside = np.interp([self.s, begin], self.way.stations, self.way.aside)
-                by = float(np.diff(aside)[0])
+                by = float(np.diff(np.interp([self.s, begin], self.way.stations, self.way.aside))[0])
                 self.t, self.slope = self.t + by, by / max(abs(self.s - begin), 1e-9)
             return
         self.slid += self._pace(gone / max(time, 1e-9)) * time
