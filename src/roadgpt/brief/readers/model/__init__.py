@@ -284,8 +284,8 @@ def _with_confidence(
         "motorway": asks.motorway and asks.scene != Scene(),
         "beside": tuple(dict.fromkeys(kept)),  # the roads of a map may be closed loops
     }
-    made = without_untold(with_diameters(asks, draft.tokens, text).model_copy(update=found), words)
-    return with_told(with_named(with_origin(made, text)), words)
+    made = with_named(with_origin(with_diameters(asks, draft.tokens, text).model_copy(update=found), text))
+    return with_told(without_untold(made, words), words)
 
 
 def _other(found: Sequence[ScoredPlan[Brief]], brief: Brief, words: str, text: SlottedText) -> str:

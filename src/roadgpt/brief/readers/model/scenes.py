@@ -171,6 +171,8 @@ def with_told(brief: Brief, words: str) -> Brief:
 
 TOLD = {name: pattern_of(name, "told", re.DOTALL) for name in TABLE["told"]}
 """What the words must tell where a network says it: it was not trained to see that they do not."""
+UNTOLD = {"fog": "fog", "wet": "wet", "rain": "wet", "night": "night"}
+"""By which of them names in ``Brief.beside`` are told."""
 
 
 def without_untold(brief: Brief, words: str) -> Brief:
@@ -180,9 +182,11 @@ def without_untold(brief: Brief, words: str) -> Brief:
     told = {name for name, pattern in TOLD.items() if pattern.search(said)}
     needs = {"fog": scene.fog and "fog", "surface": scene.surface == "wet" and "wet", "light": scene.light}
     changes = {field: None for field, name in needs.items() if name and name not in told}
+    beside = tuple(each for each in brief.beside if UNTOLD.get(each) in {None, *told})
     is_left = "left_hand" in told or ("left_hand_towns" in told and "american" not in told)
     left_hand = brief.left_hand and (is_left or says_left_hand(words))
-    return brief.model_copy(update={"left_hand": left_hand, "scene": scene.model_copy(update=changes)})
+    kept = {"left_hand": left_hand, "beside": beside, "scene": scene.model_copy(update=changes)}
+    return brief.model_copy(update=kept)
 
 
 def _each_once(lands: Iterable[Land]) -> tuple[Land, ...]:
