@@ -377,3 +377,47 @@ def test_boxes_are_in_the_lanes_whose_areas_they_overlap(plan):
             wrong += small.intersection(area).area > 0.5 and each not in found
             wrong += large.intersection(area).area < 0.01 and each in found
     assert not wrong
+
+
+@pytest.mark.parametrize(
+    ("plan", "friction"),
+    [
+        ("turn x2 | lanes=2 against=2 len=400", 0.1),
+        ("straight 100 // crossroads left lights // straight 100", 0.1),
+        ("| lanes=2 len=200 // lane_drop // straight 150", 0.35),
+        ("turn x4 | mountain lanes=2 against=2 len=600", 0.35),
+    ],
+)
+def test_nobody_accelerates_more_than_friction_and_grade_allow(plan: str, friction: float) -> None:
+    """Accelerations are measured on the recorded motion, rounded to 1 mm/s and 0.0001 rad every 0.1 s."""
+    made = stage(plan)
+    world = made.world.changed(friction=friction)
+    mover = IdmMover(Stage(made.road, world, 2), "medium")
+    seen = [mover.start(None)]
+    for tick in range(400):
+        seen.append(mover.move(tick * STEP, None, NOBODY))
+        if tick % 20 == 0:
+            assert not overlapping(mover, seen[-1])
+    states = np.full((len(seen), len(mover.actors), 5), np.nan)
+    for n, each in enumerate(seen):
+        states[n, : len(each)] = each
+    speed, (dx, dy, dz) = states[..., SPEED], np.diff(states[..., :3], axis=0).transpose(2, 0, 1)
+    sine = np.abs(dz) / np.maximum(np.sqrt(dx**2 + dy**2 + dz**2), 0.02)
+    along = np.maximum(np.abs(np.diff(speed, axis=0)) / STEP - 9.81 * sine, 0)
+    across = np.abs(np.diff(states[..., HEADING], axis=0)) / STEP * (speed[1:] + speed[:-1]) / 2
+    most = np.nanmax(np.hypot(along, across))
+    assert 0.5 < most / (9.81 * friction) < 1 + 0.1 / (9.81 * friction)
+
+
+def test_who_is_hit_brakes_as_the_road_lets_it() -> None:
+    made = stage(STRAIGHT)
+    for friction, most in ((1.0, 6.0), (0.2, 0.2 * 9.81)):
+        mover = IdmMover(Stage(made.road, made.world.changed(friction=friction), 1), "light", is_filled=False)
+        mover.comes_in = False
+        mover.start(None)
+        mover.enter(int(np.flatnonzero(mover.lanes.begins)[0]), 50.0, 12.0)
+        state = mover._shown()[0]
+        car = traffic.TestedCar(state[X], state[Y], state[HEADING], 12.0, 50.0, 0.0, 4.7, 1.8)
+        speeds = [mover.move(n * STEP, car, NOBODY)[0, SPEED] for n in range(5)]
+        np.testing.assert_allclose(np.diff(speeds) / STEP, -most, atol=0.02)
+        assert mover.stopped == [0]

@@ -15,8 +15,9 @@ import pytest
 from shapely import LineString, Point, Polygon
 
 from outside_judge import SHARED
-from roadgpt.brief.model import mirrored
-from roadgpt.brief.plan import read_plan
+from roadgpt.brief.beside import friction_of
+from roadgpt.brief.model import Brief, mirrored
+from roadgpt.brief.plan import read_plan, read_scene
 from roadgpt.brief.scenarios import LANE_WIDTH, chosen, points_of, scenario, scenarios
 from roadgpt.brief.scene import Scene
 from roadgpt.brief.scene_fit import fitted
@@ -159,6 +160,17 @@ def test_a_scenario_asks_nothing_of_a_road_on_which_it_can_happen_that_the_words
         if name not in unfit:
             needed = fitted(brief, one.onto(Scene()), 70 / 3.6)
             assert fitted(needed, one.onto(Scene()), 70 / 3.6) == needed
+
+
+@pytest.mark.parametrize("surface", ["ice", "snow"])
+def test_the_tested_car_can_stop_on_the_surface_where_there_is_room(surface: str) -> None:
+    v, happens = 50 / 3.6, "ego v=50; car ahead gap=40 v=50: brake 3"
+    dry, slippery = read_scene(happens), read_scene(f"{happens}; {surface}")
+    least = [fitted(Brief(), scene, v).length.lo for scene in (dry, slippery)]
+    more = v**2 / 2 * (1 / 9.81 / friction_of([surface]) - 1 / 4.0)
+    assert least[1] - least[0] == pytest.approx(more, abs=10)  # lengths are multiples of 10 m
+    short = fitted(read_plan("| len=200"), slippery, v).length
+    assert short.hi == 200
 
 
 @pytest.mark.parametrize(

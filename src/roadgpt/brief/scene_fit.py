@@ -1,13 +1,14 @@
 """Asks of the road of a Brief what a scene needs, or refuses it if the Brief excludes that.
 
-The tested car rolls at its speed for 4 s, then comes what happens, and then it can stop with 4 m/s2. Until
-that happens, it needs no more than 6 m/s2 sideways. Where the words leave the bends open and there is room,
-they are those of a road that is designed for the greatest speed of the scene, so that nobody slows down for
-them."""
+The tested car rolls at its speed for 4 s, then comes what happens, and then it can stop with 4 m/s2, or with
+what a slippery surface gives, if there is room. Until that happens, it needs no more than 6 m/s2 sideways.
+Where the words leave the bends open and there is room, they are those of a road that is designed for the
+greatest speed of the scene, so that nobody slows down for them."""
 
 from math import ceil, inf, pi
 
 from roadgpt.brief.amount import Amount, at_least
+from roadgpt.brief.beside import friction_of
 from roadgpt.brief.design_speed import FASTEST, SLOWEST, limits_at
 from roadgpt.brief.feasible import is_possible
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
@@ -24,6 +25,7 @@ from roadgpt.errors import BriefError
 
 ROLLS = 4.0  # s at speed before anything happens
 STOPS, ASIDE = 4.0, 6.0  # m/s2: with which the tested car can stop, and that it can use sideways
+G = 9.81  # m/s2
 SPARE = 10.0  # m, for where the tested car starts, and for its length
 JUNCTION = 20.0  # m, across one
 LANE = 3.5  # m from lane to lane
@@ -50,7 +52,9 @@ def fitted(brief: Brief, scene: Scene, limit: float, map_size: float | None = No
     before, stop = _until_stop(scene, speed, brief), speed**2 / 2 / STOPS
     lanes = scene.lanes_needed(brief.left_hand)
     if not brief.stretches:
-        side, far = map_size or brief.map_size, _until_met(scene, speed)
+        grip = G * (friction_of((*scene.surfaces, *brief.beside)) or 1.0)
+        slides = before + speed**2 / 2 / min(STOPS, grip)
+        side, far = map_size or brief.map_size, max(_until_met(scene, speed), slides)
         return _suited(brief, scene, lanes, speed, before, before + stop, side, far)
     places = [place for place in brief.junctions if place.kind not in (*LANE_KINDS, *RAMPS)]
     at_junction = bool(scene.turn) or any(

@@ -160,7 +160,9 @@ def simulate(
     more = () if traffic is None else (traffic,)  # a simulator without others takes no such argument
     drive: Drive = engine.simulate(road, world, made, seed, keep_driving, *more)
     check_motion(drive)
-    return drive if traffic is None else replace(drive, missed=traffic.missed, limited=(*traffic.limited,))
+    if traffic is None:
+        return drive
+    return replace(drive, missed=traffic.missed, limited=(*traffic.limited,), stopped=traffic.stopped)
 
 
 def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None, replays: bool = False) -> None:

@@ -45,7 +45,8 @@ COLUMNS = {
     "outside": "0..1, share of the car's box outside its lane",
 }
 """Names of the columns in their order, each with its unit and meaning."""
-RARE = ("handovers", "lights", "missed", "limited")  # of a header, only where they are not empty
+TOLD = ("missed", "limited", "stopped")  # of others: tuples of texts
+RARE = ("handovers", "lights", *TOLD)  # of a header, only where they are not empty
 OTHERS = "others"
 """Name of the array of the others' states: whole numbers of shape (samples, actors, 5); GONE while an actor
 is not there."""
@@ -146,6 +147,8 @@ class Drive:
     """What of the scene had not happened when the drive ended, in sentences."""
     limited: tuple[str, ...] = ()
     """What others did with less than their actions ask for, because the road gives no more, in sentences."""
+    stopped: tuple[str, ...] = ()
+    """Names of the others whom a contact with the tested car made brake."""
 
     def __repr__(self) -> str:
         way = f"{self['s'][-1]:.1f} m in {self.duration:.2f} s, {len(self)} steps"
@@ -276,8 +279,7 @@ def unpacked(header: Any, columns: Columns, states: NDArray[Any] | None) -> Driv
         handovers=strictly(tuple[Handover, ...], header.get("handovers", ())),
         others=None if states is None else _tracks(header[OTHERS], states, float(columns["time"][-1])),
         lights=bool(header.get("lights", False)),
-        missed=strictly(tuple[str, ...], header.get("missed", ())),
-        limited=strictly(tuple[str, ...], header.get("limited", ())),
+        **{name: strictly(tuple[str, ...], header.get(name, ())) for name in TOLD},
     )
 
 

@@ -5,7 +5,8 @@ empirical observations and microscopic simulations, Phys. Rev. E 62, 2000), abov
 Treiber, A. Kesting, Traffic Flow Dynamics (2013), 11.3.7. Everybody within a vehicle's lanes ahead is a
 leader, also who only reaches into them, who comes towards it, and the tested car. Nobody brakes harder than
 HARDEST, nor drives faster than from where it can still stop behind its leader (P. G. Gipps, A behavioural
-car-following model, Transp. Res. B 15, 1981).
+car-following model, Transp. Res. B 15, 1981). All accelerations stay in the friction circle at the vehicle's
+place and grade.
 
 Changes of lane: MOBIL without politeness (A. Kesting, M. Treiber, D. Helbing, General lane-changing model
 MOBIL, Transp. Res. Record 1999, 2007). A change lasts CHANGE seconds; from its first moment on the vehicle
@@ -24,13 +25,18 @@ import numpy as np
 from roadgpt.compiled import compiled, inlined
 from roadgpt.traffic.actor import STEP, FloatArray
 from roadgpt.traffic.boxes import touch
-from roadgpt.traffic.lane_map import PV, IntArray, LaneMap, across, place_on, touched
+from roadgpt.traffic.lane_map import ACROSS, CALM, PF, PG, PV, IntArray, LaneMap, across, place_on, touched
+from roadgpt.traffic.way import LEAST_GRIP, SIDEWAYS, SLOWING
 
-S, V, LENGTH, WIDTH, FACTOR, TOP, HEADWAY, PULL, BRAKE, ASIDE, BEGAN, PROGRESS, WAIT, A_NEXT = range(14)
+S, V, LENGTH, WIDTH, FACTOR, TOP, HEADWAY, PULLS, BRAKES, ASIDE, BEGAN, PROGRESS, WAIT, A_NEXT = range(14)
+PULL, BRAKE, GRIP, LASTS, DENIED = range(14, 19)
 """Columns of numbers of a vehicle: the station of its middle in its lane, its speed, length and width; the
 share of speed limits and the top speed that it drives; IDM's T, a and b; its offset to the left of its
 lane's middle, that offset when its change of lane began, and the share of the change that is done (1: none
-under way); for how long it has stood first in line; and its acceleration in the next step."""
+under way); for how long it has stood first in line; its acceleration in the next step; IDM's a and b, the
+hardest braking and the seconds of a change of lane that friction and grade allow at its place; and the
+hardest braking that they denied it."""
+NUMBERS = DENIED + 1
 AT, LAST, GRANTED, OLD, STATE, HAS_STOPPED, GOAL = range(7)
 """Columns of whole numbers: which lane of its way it is in, the number of lanes of its way, up to which of
 them it has a grant, the lane that it is leaving (-1: none), its state, whether it has stood at the stop
@@ -40,13 +46,14 @@ TESTED = 0
 """The row of the tested car, which is not moved."""
 JAM = 2.0  # m, IDM's s0
 HARDEST = 9.0  # m/s^2, as SUMO's emergencyDecel
+SPARE = 0.1  # m/s^2, by which one is told to want to brake harder than it can
 EASY = 2.0  # m/s^2, with which a vehicle plans to stop
 FIRM = 3.0  # m/s^2, with which it stops for a yellow light; else it drives on
-SLOWING = 1.5  # m/s^2, before bends
+GENTLY = 1.5  # m/s^2, before bends
 BESIDE_ME = 4.0  # m/s^2, against somebody who moves in beside
 HORIZON = 150.0  # m
 LINE = 1.0  # m, between the front of a waiting vehicle and the line
-CHANGE = 4.0  # s
+CHANGE, PEAK, WIDE = 4.0, 5.78, 3.75  # s; m/s^2 sideways for each m at 1 s; m from lane to lane
 LEAST_WAY = 15.0  # m, of way that a change takes at least
 FASTER = 2.0  # m/s, by which one may become faster during a change that has to be done before a junction
 EVERY = 10  # steps, after which a vehicle considers a change again
@@ -102,12 +109,37 @@ def idm(
     return free - pull * (desired / max(gap, 0.1)) ** 2
 
 
+@compiled
+def hold(crowd: Crowd, i: int) -> None:
+    """Writes what friction and grade allow a vehicle at its place."""
+    lanes, row, v = crowd.lanes, crowd.numbers[i], crowd.numbers[i, V]
+    lane = crowd.ways[i, crowd.whole[i, AT]]
+    last = lanes.first[lane + 1] - lanes.first[lane] - 1
+    sample = lanes.sample[lanes.first[lane] + min(max(int(row[S] / lanes.step[lane] + 0.5), 0), last)]
+    circle, falls = sample[PG], sample[PF]
+    taken = min(ACROSS, CALM * circle) * (v / sample[PV]) ** 2
+    spare = max(SIDEWAYS * circle - taken, LEAST_GRIP)
+    row[LASTS] = max(CHANGE, math.sqrt(PEAK * WIDE / spare))
+    if row[PROGRESS] < 1.0:
+        taken += PEAK * abs(row[BEGAN]) * (v / max(v * row[LASTS], LEAST_WAY)) ** 2
+    left = math.sqrt(max(circle * circle - taken * taken, 0.0))
+    row[GRIP] = min(HARDEST, max(left + falls, LEAST_GRIP))
+    row[PULL] = min(row[PULLS], max(SLOWING * left - falls, LEAST_GRIP))
+    row[BRAKE] = min(row[BRAKES], SLOWING * row[GRIP])
+
+
 @inlined
-def _stoppable(v: float, gap: float, leader: float) -> float:
+def _easy(row: FloatArray) -> float:
+    """Returns the m/s^2 with which a vehicle plans to stop."""
+    return float(max(min(EASY, row[BRAKE]), LEAST_GRIP))
+
+
+@inlined
+def _stoppable(v: float, gap: float, leader: float, hardest: float) -> float:
     """Returns the highest speed after a step from which one stops behind a leader that brakes as hard."""
-    room = max(gap - 0.5, 0.0) + max(leader, 0.0) ** 2 / (2.0 * HARDEST)
-    reach = HARDEST * STEP / 2.0
-    return -reach + math.sqrt(reach * reach + 2.0 * HARDEST * max(room - v * STEP / 2.0, 0.0))
+    room = max(gap - 0.5, 0.0) + max(leader, 0.0) ** 2 / (2.0 * hardest)
+    reach = hardest * STEP / 2.0
+    return -reach + math.sqrt(reach * reach + 2.0 * hardest * max(room - v * STEP / 2.0, 0.0))
 
 
 @inlined
@@ -119,14 +151,14 @@ def _seen(row: FloatArray, entry: FloatArray, ahead: float, v: float, wanted: fl
         return math.inf, math.inf
     gap = low - row[LENGTH] / 2.0
     if entry[3] == ASKS:
-        if gap < v * v / (2.0 * EASY) + JAM:
+        if gap < v * v / (2.0 * _easy(row)) + JAM:
             return math.inf, math.inf
         return idm(v, wanted, gap, 0.0, row[PULL], row[BRAKE], row[HEADWAY]), math.inf
     if gap <= 0.0:
         return -BESIDE_ME, math.inf
     return (
         idm(v, wanted, gap, entry[3], row[PULL], row[BRAKE], row[HEADWAY]),
-        _stoppable(v, gap, entry[3]),
+        _stoppable(v, gap, entry[3], row[GRIP]),
     )
 
 
@@ -162,12 +194,14 @@ def _wanted(lanes: LaneMap, row: FloatArray, lane: int) -> float:
 
 
 @compiled
-def _bends(crowd: Crowd, i: int) -> float:
-    """Returns the speed that the bends and speed limits ahead allow now."""
+def bends(crowd: Crowd, i: int) -> tuple[float, float]:
+    """Returns the speed that a vehicle wants by the bends and speed limits ahead, and the greatest at which
+    the friction circle lets it through the bends."""
     lanes, whole, ways = crowd.lanes, crowd.whole, crowd.ways
     row = crowd.numbers[i]
-    fastest = _wanted(lanes, row, ways[i, whole[i, AT]])
-    far = row[V] * row[V] / (2.0 * SLOWING) + 10.0
+    fastest, most = _wanted(lanes, row, ways[i, whole[i, AT]]), math.inf
+    slowing = min(GENTLY, row[BRAKE])
+    far = row[V] * row[V] / (2.0 * slowing) + 10.0
     k, s, ahead = whole[i, AT], row[S], 0.0
     while ahead < far and k < whole[i, LAST]:
         lane = ways[i, k]
@@ -176,13 +210,16 @@ def _bends(crowd: Crowd, i: int) -> float:
             n = lanes.first[lane] + min(
                 int(s / lanes.step[lane] + 0.5), lanes.first[lane + 1] - lanes.first[lane] - 1
             )
-            allowed = min(lanes.sample[n, PV] * row[FACTOR], own)
-            fastest = min(fastest, math.sqrt(allowed * allowed + 2.0 * SLOWING * ahead))
+            bend, circle = lanes.sample[n, PV], lanes.sample[n, PG]
+            allowed = min(bend * row[FACTOR], own)
+            fastest = min(fastest, math.sqrt(allowed * allowed + 2.0 * slowing * ahead))
+            square = bend * bend * SIDEWAYS * circle / min(ACROSS, CALM * circle)
+            most = min(most, math.sqrt(square + 2.0 * SLOWING * row[GRIP] * ahead))
             s += 2.0
             ahead += 2.0
         s -= lanes.length[lane]
         k += 1
-    return fastest
+    return fastest, most
 
 
 @compiled
@@ -237,14 +274,15 @@ def _comes_before(crowd: Crowd, i: int, j: int, other: int, first: float, leaves
     if q < 0 or crowd.ways[j, q] != other or (before >= 0 and crowd.lights[before] == RED):
         return False
     line, v, waits = away - numbers[j, LENGTH] / 2.0, numbers[j, V], numbers[i, WAIT]
-    if j != TESTED and waits > PATIENCE and (before < 0 or line > v * v / (2.0 * EASY) + 5.0):
+    if j != TESTED and waits > PATIENCE and (before < 0 or line > v * v / (2.0 * _easy(numbers[j])) + 5.0):
         return False
     turn = TURN if j != TESTED else 2.0 * TURN  # so that not both begin to move at once
     if v < STANDING and waits > turn:  # if it has waited longer, it was asked before, and cannot go
         return False
     arrives = (line + first) / max(v, 3.0)
     if j == TESTED:
-        arrives = time_over(v, line + first, crowd.lanes.limit[other], SPRINT)
+        sprint = min(SPRINT, numbers[j, GRIP])
+        arrives = time_over(v, line + first, crowd.lanes.limit[other], sprint)
     return bool(arrives < leaves + MARGIN)
 
 
@@ -348,7 +386,7 @@ def _to_stop(crowd: Crowd, i: int, count: int) -> float:
     line = ahead - row[LENGTH] / 2.0
     if before >= 0:
         line -= lanes.length[before] - lanes.stop[before]
-    if line > max(15.0, row[V] ** 2 / (2.0 * EASY) + row[V] + 5.0):
+    if line > max(15.0, row[V] ** 2 / (2.0 * _easy(row)) + row[V] + 5.0):
         return math.inf
     if before < 0:  # it stands in the junction already
         whole[i, GRANTED] = k
@@ -356,7 +394,7 @@ def _to_stop(crowd: Crowd, i: int, count: int) -> float:
     if line < 5.0 and row[V] < STANDING:
         row[WAIT] += STEP
         whole[i, HAS_STOPPED] = 1
-    is_late = row[V] > 0.5 and line < row[V] ** 2 / (2.0 * FIRM)
+    is_late = row[V] > 0.5 and line < row[V] ** 2 / (2.0 * min(FIRM, row[GRIP]))
     closed = lights[before] == RED or (lights[before] == YELLOW and not is_late)
     is_over = line < -LINE
     if not is_over and (closed or (lanes.has_stop_sign[before] and whole[i, HAS_STOPPED] == 0)):
@@ -383,11 +421,11 @@ def _change(crowd: Crowd, i: int, side: int, own: float, wanted: float, count: i
     if target < 0 or (lanes.ends[target] and not must):
         return -math.inf
     s = across(lanes, lane, row[S], target)
-    way = max((row[V] + FASTER) * CHANGE, LEAST_WAY)
+    way = max((row[V] + FASTER) * row[LASTS], LEAST_WAY)
     end = min(lanes.usable[target, 1], lanes.stop[target] - LINE - row[LENGTH] / 2.0)
     if s < lanes.usable[target, 0] + row[LENGTH] or (not must and s + way > end):
         return -math.inf
-    limit = URGENT if must else SAFE
+    limit = min(URGENT if must else SAFE, SLOWING * row[GRIP])
     best = idm(row[V], wanted, math.inf, 0.0, row[PULL], row[BRAKE], row[HEADWAY])
     for n in range(count):
         entry = crowd.entries[n]
@@ -432,7 +470,7 @@ def _locate(crowd: Crowd) -> None:
         if row[PROGRESS] < 1.0:
             p = row[PROGRESS]
             slope = -row[BEGAN] * 30.0 * p * p * (1.0 - p) * (1.0 - p)
-            slant = math.atan(slope / max(row[V] * CHANGE, LEAST_WAY))
+            slant = math.atan(slope / max(row[V] * row[LASTS], LEAST_WAY))
         out[i, 0] = x - aside * math.sin(heading)
         out[i, 1] = y + aside * math.cos(heading)
         out[i, 2] = z
@@ -506,11 +544,11 @@ def _decide(crowd: Crowd, i: int, count: int, may_change: bool) -> int:
     lanes, numbers, whole = crowd.lanes, crowd.numbers, crowd.whole
     row, v = numbers[i], numbers[i, V]
     lane = crowd.ways[i, whole[i, AT]]
-    wanted = _bends(crowd, i)
+    wanted, most = bends(crowd, i)
     pull, brake, headway = row[PULL], row[BRAKE], row[HEADWAY]
     least = idm(v, wanted, math.inf, 0.0, pull, brake, headway)
     a, fastest = _leaders(crowd, i, wanted, count, -1, 0.0)
-    least = min(least, a)
+    least, fastest = min(least, a), min(fastest, most)
     if whole[i, OLD] >= 0:
         old = whole[i, OLD]
         offset = -across(lanes, lane, row[S], old)
@@ -521,12 +559,12 @@ def _decide(crowd: Crowd, i: int, count: int, may_change: bool) -> int:
     if line < math.inf:
         least = min(least, idm(v, wanted, max(line + JAM - LINE, 0.1), 0.0, pull, brake, headway))
         if line > 0.0:
-            fastest = min(fastest, _stoppable(v, line + 0.5, 0.0))
+            fastest = min(fastest, _stoppable(v, line + 0.5, 0.0, row[GRIP]))
     ends = lanes.ends[lane]
     if ends:
         left = lanes.usable[lane, 1] - row[S] - row[LENGTH] / 2.0
         least = min(least, idm(v, wanted, max(left, 0.1), 0.0, pull, brake, headway))
-        fastest = min(fastest, _stoppable(v, max(left, 0.0) + 0.5, 0.0))
+        fastest = min(fastest, _stoppable(v, max(left, 0.0) + 0.5, 0.0, row[GRIP]))
         row[WAIT] += STEP * (v < STANDING)
     if may_change and row[PROGRESS] >= 1.0 and lanes.junction[lane] < 0 and (v > SLOWEST_CHANGE or ends):
         best, side = (-math.inf, -1) if ends else (GAIN, -1)
@@ -538,7 +576,10 @@ def _decide(crowd: Crowd, i: int, count: int, may_change: bool) -> int:
             target = lanes.beside[lane, side]
             _begin_change(crowd, i, target)
             count = _add(crowd.entries, count, target, row[S], row[LENGTH], v, i)
-    after = min(v + max(least, -HARDEST) * STEP, max(fastest, v - HARDEST * STEP))
+    wants = min(max(-least, (v - fastest) / STEP), HARDEST)
+    if wants > row[GRIP] + SPARE:
+        row[DENIED] = max(row[DENIED], wants)
+    after = min(v + max(least, -row[GRIP]) * STEP, max(fastest, v - row[GRIP] * STEP))
     row[A_NEXT] = (max(after, 0.0) - v) / STEP
     return count
 
@@ -552,7 +593,7 @@ def _move(lanes: LaneMap, row: FloatArray, whole: IntArray, way: IntArray) -> No
     row[V] = after
     row[S] += driven
     if row[PROGRESS] < 1.0:
-        p = min(row[PROGRESS] + driven / max(CHANGE * after, LEAST_WAY), 1.0)
+        p = min(row[PROGRESS] + driven / max(row[LASTS] * after, LEAST_WAY), 1.0)
         row[PROGRESS], row[ASIDE] = p, row[BEGAN] * (1.0 - p * p * p * (10.0 - 15.0 * p + 6.0 * p * p))
         if p >= 1.0:
             whole[OLD] = -1
@@ -576,6 +617,9 @@ def step(crowd: Crowd, bodies: FloatArray, room: FloatArray, tick: int) -> None:
         tick: The number of the step."""
     numbers, whole, states, entries = crowd.numbers, crowd.whole, crowd.states, crowd.entries
     count = _boxes(crowd, bodies)
+    for i in range(len(numbers)):
+        if whole[i, STATE] != ABSENT:
+            hold(crowd, i)
     if whole[TESTED, STATE] == DRIVES:
         _reserve(crowd, count)
     order = np.argsort(-numbers[:, WAIT], kind="mergesort")
@@ -592,7 +636,7 @@ def step(crowd: Crowd, bodies: FloatArray, room: FloatArray, tick: int) -> None:
                 if is_behind and math.cos(other[3] - one[3]) > ALONG:  # it does not drive through the car
                     size[V] = min(size[V], max(its[V], 0.0))
         if whole[i, STATE] == STANDS_HIT:
-            numbers[i, A_NEXT] = max(-AFTER_CONTACT, -numbers[i, V] / STEP)
+            numbers[i, A_NEXT] = max(-min(AFTER_CONTACT, numbers[i, GRIP]), -numbers[i, V] / STEP)
         else:
             count = _decide(crowd, i, count, (tick + i) % EVERY == 0)
     room[:] = math.inf
@@ -624,13 +668,14 @@ def _reserve(crowd: Crowd, count: int) -> None:
     soon = has_priority and row[V] > STANDING and time_over(row[V], max(line, 0.0), top, SPRINT) < SOON
     waits = row[V] < STANDING and line < lanes.length[before] - lanes.stop[before] + 5.0
     row[WAIT] = max(row[WAIT], 0.0) + STEP * (waits and crowd.lights[before] == GREEN)
-    must = before < 0 or line < 0.0 or line < row[V] ** 2 / (2.0 * AGAINST_MUST)
+    must = before < 0 or line < 0.0 or line < row[V] ** 2 / (2.0 * min(AGAINST_MUST, row[GRIP]))
     goes = must or soon or row[WAIT] > PATIENCE
     if not goes and (row[WAIT] <= TURN or not _may_enter(crowd, TESTED, k, ahead, False, count)):
         return
     whole[TESTED, GRANTED], row[WAIT] = k, -PATIENCE if goes else -2.0 * TURN
     for j in range(len(numbers)):  # who is not there yet gives its grant back, if it stops without effort
-        at, stops = whole[j, AT], numbers[j, S] + numbers[j, LENGTH] / 2.0 + numbers[j, V] ** 2 / (2.0 * EASY)
+        at, its = whole[j, AT], numbers[j]
+        stops = its[S] + its[LENGTH] / 2.0 + its[V] ** 2 / (2.0 * _easy(its))
         is_ahead = at < whole[j, GRANTED] and (meets[:, 0] == ways[j, at + 1]).any()
         if is_ahead and stops < lanes.length[ways[j, at]]:
             whole[j, GRANTED] = at

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from roadgpt.compiled import compiled, inlined
 from roadgpt.network.lanes import Lane, Lanes
 from roadgpt.network.network import Leg
+from roadgpt.road.speed_profile import GRAVITY
 from roadgpt.traffic.actor import FloatArray
 
 IntArray = NDArray[np.int64]
@@ -20,12 +21,14 @@ CELL = 2.0  # m, side of the cells in which samples are looked up
 LEAST = 2.4  # m, width of a lane from which on vehicles use it
 TOUCH = 0.15  # m by which a box has to reach into a lane to count as being in it
 APART = 0.8  # m, most between the points of a box that are looked up
-PX, PY, PZ, PH, PW, PV, PC, PS = range(8)
+PX, PY, PZ, PH, PW, PV, PC, PS, PG, PF = range(10)
 """Columns of a sample: place in metres, heading in radians (unwrapped along its lane), half the lane's width
-in metres, the highest speed in m/s of its bend, and cosine and sine of the heading."""
+in metres, the highest speed in m/s of its bend, cosine and sine of the heading, the radius of the friction
+circle (at friction 1, up to ``on_friction``), and how much gravity pulls back along the lane, in m/s^2."""
 WIDEST = 2.5  # m, width of the widest vehicles
 OVER = 0.2  # m, by which the corner of a vehicle may reach over the edge of its lane in a bend
 ACROSS = 2.0  # m/s^2, lateral acceleration of others in bends; ISO 11270 allows lane keeping 3
+CALM = 0.4  # share of the friction circle that takes at most
 PER_CHANGE = 1e6  # m, that a change of lane counts on a way, so that there are as few as possible
 
 
@@ -33,7 +36,7 @@ class LaneMap(NamedTuple):
     """The lanes as arrays; a lane is its number in ``ids``, the ids of the network's lanes."""
 
     sample: FloatArray
-    """Shape (samples, 8), lane after lane, see PX."""
+    """Shape (samples, 10), lane after lane, see PX."""
     first: IntArray
     """The first sample of each lane and, as the last entry, the number of samples."""
     lane_of: IntArray
@@ -158,7 +161,17 @@ def _sampled(lane: Lane) -> tuple[FloatArray, float, tuple[float, float]]:
     wide = np.flatnonzero(width >= LEAST)
     stretch = (float(s[wide[0]]), float(s[wide[-1]])) if len(wide) else (0.0, 0.0)
     turned = [(math.cos(each), math.sin(each)) for each in heading.tolist()]
-    return np.column_stack([place, heading, width / 2, speed, turned]), step, stretch
+    slope = np.arctan(np.gradient(place[:, 2], step))
+    load = GRAVITY * np.column_stack([np.cos(slope), np.sin(slope)])
+    return np.column_stack([place, heading, width / 2, speed, turned, load]), step, stretch
+
+
+def on_friction(lanes: LaneMap, friction: FloatArray | float) -> LaneMap:
+    """Returns the lanes with the friction of each sample, at which bends are driven more slowly."""
+    sample = lanes.sample.copy()
+    sample[:, PG] *= friction
+    sample[:, PV] *= np.minimum(np.sqrt(CALM * sample[:, PG] / ACROSS), 1.0)
+    return lanes._replace(sample=sample)
 
 
 def _beside(lane: Lane, side: str, number: dict[Leg, int]) -> int:

@@ -142,6 +142,13 @@ class Traffic:
         """What of the scene has not happened so far, in sentences."""
         return tuple(each for mover, _ in self._movers for each in getattr(mover, "missed", ()))
 
+    @property
+    def stopped(self) -> tuple[str, ...]:
+        """Names of those whom a contact with the tested car made brake."""
+        return tuple(
+            self.actors[own[n]].name for each, own in self._movers for n in getattr(each, "stopped", ())
+        )
+
     def tracks(self) -> Tracks:
         """Returns how everybody moved who was there at some time."""
         states = np.full((len(self._samples), len(self.actors), 5), np.nan)

@@ -28,7 +28,6 @@ from roadgpt.network import legs_of, network_of
 from roadgpt.network.landscape import horizon_around
 from roadgpt.network.lanes import lanes_of
 from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y
-from roadgpt.traffic.following import AFTER_CONTACT
 from roadgpt.traffic.way import LEAST_GRIP, Way
 from roadgpt.verdict.careful import CAREFUL, DRIVERS, FULL, Driver, Moment, drive_on, stopping_distance
 from roadgpt.verdict.contact import CORNER, middles, separation
@@ -175,7 +174,7 @@ class _Encounter:
         gone = np.flatnonzero(np.isnan(states[:, X]))
         begin = max([0, int((self.at_time - WINDOW) / STEP), *(gone[gone < hit] + 1)])
         end = min([len(states), *gone[gone > hit]])
-        if _is_stopped(states[hit:end, SPEED]):
+        if actor.name in drive.stopped:
             end = hit + 1
         self.measured = measure(road, drive, world)
         self.gap = self.measured.gap[self.measured.time <= self.at_time]
@@ -304,12 +303,6 @@ class _Encounter:
             if kept * STEP >= KEPT:
                 return f"kept {moment.gap:.1f} m, not the {least:.1f} m of UN R157"
         return ""
-
-
-def _is_stopped(speed: FloatArray) -> bool:
-    """Whether a contact made the other brake, as the mover idm does; ``speed`` is its from then on."""
-    change = np.diff(speed)[1:4]
-    return len(change) == 3 and bool((np.abs(change + AFTER_CONTACT * STEP) < 0.01).all())
 
 
 def _way(

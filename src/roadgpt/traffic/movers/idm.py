@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roadgpt.brief.scene import FLOWS, ActorKind, Flow
 from roadgpt.compiled import bound
@@ -17,9 +18,10 @@ from roadgpt.network import legs_of, network_of
 from roadgpt.network.lanes import Lanes, lanes_of
 from roadgpt.network.network import Leg, Network, RoadEnd
 from roadgpt.traffic import following as f
-from roadgpt.traffic.actor import SIZES, STEP, Actor, FloatArray
-from roadgpt.traffic.lane_map import PER_CHANGE, lane_map, place_on
+from roadgpt.traffic.actor import SIZES, SPEED, STEP, Actor, FloatArray
+from roadgpt.traffic.lane_map import PER_CHANGE, PF, PG, LaneMap, lane_map, on_friction, place_on
 from roadgpt.traffic.lights import Lights
+from roadgpt.traffic.way import LEAST_GRIP, SLOWING
 
 if TYPE_CHECKING:
     from roadgpt.road import Road
@@ -47,7 +49,7 @@ TURNS_BACK = 1e-6  # how often somebody leaves on the road on which it came, whe
 CLEAR = 8.0  # m, from the middle of a vehicle at the start to the place where it stops
 LEAST_SPEED = 4.0  # m/s, with which a vehicle comes onto the map at least
 APART = 12.0  # m, from the middle of a vehicle at the start to who stands or drives there by a scene
-NOBODY = np.empty((0, 7))
+NOBODY, NO_LIGHTS = np.empty((0, 7)), np.empty(0, np.int64)
 ABREAST = 15.0  # m, from the tested car to somebody in another lane at the start
 AHEAD, BEHIND = 30.0, 15.0  # m before and behind the tested car where nobody is at first, and 2 s of its way
 
@@ -65,14 +67,20 @@ class IdmMover:
         self.comes_in = True
         road, network = stage.road, network_of(stage.road, stage.world)
         lanes = lanes_of(network)
-        self.lanes, self.ids = lane_map(lanes, stage.world.limits.speed_limit, _near(lanes, road))
+        dry, self.ids = lane_map(lanes, stage.world.limits.speed_limit, _near(lanes, road))
+        self.lanes = on_friction(dry, _friction(stage, network, dry, self.ids))
+        circle, falls = self.lanes.sample[:, PG], np.abs(self.lanes.sample[:, PF])
+        least = np.minimum.reduceat(circle - falls, self.lanes.first[:-1])
+        self._ease = np.maximum(SLOWING * least, LEAST_GRIP)
+        """With how many m/s^2 one slows down easily everywhere on each lane."""
+        self._denied = 0.0
         self.lights = stage.lights or Lights(network, stage.seed)
         self._ends = [RoadEnd(key.road, "end" if lanes[key].is_along else "start") for key in self.ids]
         self._path = _path(road, legs_of(road, stage.world), self.ids)
         self._rng = np.random.default_rng([self._seed, 0])
         self._exit_roads = np.array([self.ids[n].road for n in self.lanes.exits])
         size, longest = 64, max(len(self.ids) + 2 * KEPT, len(self._path[1])) + 1
-        self._numbers = np.zeros((size, 14))
+        self._numbers = np.zeros((size, f.NUMBERS))
         self._whole = np.zeros((size, 7), np.int64)
         self._ways = np.full((size, longest), -1, np.int64)
         self._states = np.full((size, 5), math.nan)
@@ -122,20 +130,35 @@ class IdmMover:
         """Returns the states of all actors, shape ``(actors, 5)``, STEP after ``time``."""
         self._see(car)
         lights = np.array([self.lights.shown(end, time) for end in self._ends])
-        n = self._present
-        crowd = f.Crowd(
-            self.lanes, self._numbers[:n], self._whole[:n], self._ways[:n], self._states[:n], self._entries,
-            lights,
-        )  # fmt: skip
-        given = (crowd, bodies, self._room, self._tick)
+        given = (self._crowd(lights), bodies, self._room, self._tick)
         if not self._tick:
             self._step = bound(f.step, given)
         self._step(*given)
+        self._denied = max(self._denied, float(self._numbers[:, f.DENIED].max()))
         self._tick += 1
         if self.comes_in:
             self._let_in()
         self._tidy()
         return self._shown()
+
+    def _crowd(self, lights: NDArray[np.int64]) -> f.Crowd:
+        n = self._present
+        return f.Crowd(
+            self.lanes, self._numbers[:n], self._whole[:n], self._ways[:n], self._states[:n], self._entries,
+            lights,
+        )  # fmt: skip
+
+    @property
+    def stopped(self) -> list[int]:
+        """The numbers of those whom the tested car touched."""
+        found: list[int] = self._who[self._whole[self._rows, f.STATE] == f.STANDS_HIT].tolist()
+        return found
+
+    @property
+    def limited(self) -> dict[str, bool]:
+        """In a sentence, that somebody could not brake as hard as it wanted to."""
+        said = f"a vehicle of the flow wanted to brake with {self._denied:.1f} m/s2, more than the road gives"
+        return {said: False} if self._denied else {}
 
     @property
     def vehicles(self) -> int:
@@ -145,7 +168,7 @@ class IdmMover:
     def _stoppable(self, lane: int, s: float) -> float:
         """Returns the speed in m/s from which one stops easily before the junction at the end of a lane."""
         left = max(float(self.lanes.stop[lane]) - s - CLEAR, 0.0)
-        return math.sqrt(2.0 * f.EASY * left) if self._goes_on[lane] else math.inf
+        return math.sqrt(2.0 * min(f.EASY, self._ease[lane]) * left) if self._goes_on[lane] else math.inf
 
     def _see(self, car: "TestedCar | None") -> None:
         """Enters the tested car into its row."""
@@ -154,7 +177,7 @@ class IdmMover:
             whole[f.STATE] = f.ABSENT
             return
         self._states[f.TESTED] = car.x, car.y, 0.0, car.heading, car.speed
-        row[: f.PULL + 1] = 0.0, car.speed, car.length, car.width, 1.0, 0.0, 0.0, 1.5
+        row[: f.BRAKES + 1] = 0.0, car.speed, car.length, car.width, 1.0, 0.0, 0.0, 1.5, 2.0
         row[f.PROGRESS] = 1.0
         starts, lanes = self._path
         k = min(max(bisect_right(starts, car.s) - 1, 0), len(lanes) - 1)
@@ -180,7 +203,7 @@ class IdmMover:
         factor = float(np.clip(rng.normal(1.0, SPREAD), SLOWEST, FASTEST))
         speed = min(most, float(self.lanes.limit[lane]) * factor, top)
         self._numbers[row] = 0.0
-        self._numbers[row, : f.BRAKE + 1] = (
+        self._numbers[row, : f.BRAKES + 1] = (
             s, speed, size.length, size.width, factor, top, headway, pull, brake,
         )  # fmt: skip
         self._numbers[row, f.PROGRESS] = 1.0
@@ -191,6 +214,9 @@ class IdmMover:
         self.actors.append(Actor(f"{kind} {sum(each.kind == kind for each in self.actors) + 1}", kind, size))
         self._who, self._rows = np.append(self._who, number - 1), np.append(self._rows, row)
         self._present = max(self._present, row + 1)
+        crowd = self._crowd(NO_LIGHTS)
+        f.hold(crowd, row)
+        self._numbers[row, f.V] = self._states[row, SPEED] = min(speed, f.bends(crowd, row)[1])
 
     def _row(self) -> int:
         if not self._free:
@@ -237,8 +263,8 @@ class IdmMover:
             self._waits[lane] += comes
             if not self._waits[lane]:
                 continue
-            gap = self._room[lane] - 5.0 - f.JAM
-            fastest = gap / 1.5, math.sqrt(2.0 * f.FIRM * max(gap, 0.0)), self._stoppable(lane, 0.0)
+            gap, firm = self._room[lane] - 5.0 - f.JAM, min(f.FIRM, self._ease[lane])
+            fastest = gap / 1.5, math.sqrt(2.0 * firm * max(gap, 0.0)), self._stoppable(lane, 0.0)
             speed = min(float(self.lanes.limit[lane]), *fastest)
             if gap > 8.0 and speed >= min(LEAST_SPEED, float(self.lanes.limit[lane])):
                 self.enter(lane, 0.0, speed)
@@ -270,6 +296,22 @@ class IdmMover:
         out = np.full((len(self.actors), 5), math.nan)
         out[self._who] = self._states[self._rows]
         return out
+
+
+def _friction(stage: "Stage", network: Network, lanes: LaneMap, ids: Sequence[Leg]) -> FloatArray:
+    """Returns the friction of each sample of the lanes: on the tested car's roads that of its stations."""
+    road, world = stage.road, stage.world
+    found, begins = np.full(len(lanes.station), world.site.friction), dict[int, tuple[float, Leg]]()
+    for leg, start in zip(legs_of(road, world), road.starts, strict=False):
+        begins.setdefault(leg.road, (start, leg))
+    for n, key in enumerate(ids) if world.scene.slippery else ():
+        if key.road in begins:
+            (start, leg), member = begins[key.road], network.road(key.road)
+            rows, leads = slice(*lanes.first[n : n + 2]), member.profile.leads_along
+            s = lanes.station[rows]
+            s = start + (s if leads(key.lane) == leads(leg.lane) else member.road.length - s)
+            found[rows] = [world.friction_at(each) for each in s.tolist()]
+    return found
 
 
 def _is_close(car: "TestedCar", x: float, y: float, is_own: bool) -> bool:

@@ -163,6 +163,11 @@ class Script:
         }
 
     @property
+    def stopped(self) -> list[int]:
+        """The numbers of those who hit the tested car from behind."""
+        return [n for n, act in enumerate(self._acts) if act.hits]
+
+    @property
     def missed(self) -> tuple[str, ...]:
         """What of the scene has not begun so far, a sentence for each actor."""
         found = []
