@@ -191,6 +191,9 @@ def test_the_command_films_a_run_two_runs_and_a_campaign(
     (folders[1] / "chase.mp4").unlink()
     assert len(asked(tmp_path, "--all").splitlines()) == 1
     assert (folders[0] / "chase.mp4").stat().st_mtime_ns == kept
+    (folders[1] / "chase.mp4").unlink()
+    assert asked(tmp_path, "--all", "-q") == "0 "
+    assert (folders[1] / "chase.mp4").exists()
     for words, said in (
         ((folders[0], "--out", "a.txt"), "end in .mp4"),
         ((folders[0], "--out", tmp_path), "is a folder"),
