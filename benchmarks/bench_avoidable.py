@@ -10,7 +10,8 @@ km/h less, 0 to 60 m ahead by 10, and comes sideways with 0.5 to 3.0 m/s by 0.5;
 would go backwards are left out. In each cell both programs say whether the two collide. The other's motion
 is that of the Joint Research Centre's program, which also lets the careful driver begin when the other
 reaches into its lane; the last column counts collisions if it begins as the regulation's text says, 0.4 s
-after the other has come 0.375 m out of the middle of its lane.
+after the other has come 0.375 m out of the middle of its lane. All this is also done with the step and the
+contact of verdicts, 0.01 s and 20 mm; theirs stays at 0.1 s.
 """
 
 import argparse
@@ -22,10 +23,14 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
+import numpy as np
+
 from roadgpt.brief.scenarios import LANE_WIDTH, chosen
 from roadgpt.road import World
 from roadgpt.run import Setup, perform
+from roadgpt.verdict.avoidable import FINE
 from roadgpt.verdict.careful import DRIVERS, Driver, Moment, drive_on
+from roadgpt.verdict.contact import CORNER
 
 STEP, LENGTH, WIDTH, BESIDE = 0.1, 4.3, 1.9, 3.5  # s, m; the other begins in the middle of the next lane
 WANDERS, EVALUATED = 0.375, 0.4  # m, s
@@ -57,24 +62,26 @@ def theirs(driver: Driver, cell: Cell, models: Any, movement: Any) -> tuple[bool
     return bool(car.crash), other
 
 
-def ours(driver: Driver, own: float, other: Any, as_text: bool = False) -> bool:
-    """Whether our driver collides with the other, who moved so; ``as_text``: perceived as R157 says."""
-    along, aside, pace, drift = (
-        list(map(float, getattr(other, name)))
-        for name in ("pos_profile_long", "pos_profile_lat", "speed_profile_long", "speed_profile_lat")
-    )
+def ours(driver: Driver, own: float, other: Any, as_text: bool = False, step: float = STEP) -> bool:
+    """Whether our driver collides with the other, who moved so; ``as_text``: perceived as R157 says. Between
+    the other's steps it moves evenly; with the step of verdicts a contact counts from theirs on, too."""
+    names = ("pos_profile_long", "pos_profile_lat", "speed_profile_long", "speed_profile_lat")
+    profiles = [np.asarray(getattr(other, name), float) for name in names]
+    fine = np.arange(0.0, len(profiles[0]) - 1 + 1e-9, step / STEP)
+    along, aside, pace, drift = (np.interp(fine, np.arange(len(each)), each).tolist() for each in profiles)
+    touch = CORNER if step == FINE else 0.0
     wanders = next((i for i, t in enumerate(aside) if t <= BESIDE - WANDERS), len(aside))
 
     def seen(i: int, place: float, speed: float, gained: float) -> Moment:
         clearance = abs(aside[i]) - WIDTH
-        is_perceived = i >= wanders + EVALUATED / STEP if as_text else clearance <= 0
+        is_perceived = i >= wanders + EVALUATED / step if as_text else clearance <= 0
         return Moment(
             along[i] - place - LENGTH, clearance, 2 * LENGTH, speed, gained, pace[i], -drift[i], is_perceived
         )
 
-    places, _ = drive_on(driver, seen, [own] * len(along), STEP, own * STEP)
+    places, _ = drive_on(driver, seen, [own] * len(along), step, own * STEP)
     return any(
-        abs(t) < WIDTH and abs(x - place) < LENGTH
+        abs(t) < WIDTH + touch and abs(x - place) < LENGTH + touch
         for x, t, place in zip(along[:-1], aside[:-1], places[:-1], strict=True)
     )
 
@@ -115,14 +122,17 @@ def main() -> None:
     from utility import models, movement
 
     grid = cells()
-    print(f"{len(grid)} cells\n{'driver':<16} collisions theirs  ours  agree       as in the text of R157")
-    for driver in DRIVERS:
+    print(
+        f"{len(grid)} cells\n{'driver':<16} step   collisions theirs  ours  agree   by the text of R157"
+    )
+    for driver, step in itertools.product(DRIVERS, (STEP, FINE)):
         told = [theirs(driver, cell, models, movement) for cell in grid]
-        found = [ours(driver, cell[0], other) for cell, (_, other) in zip(grid, told, strict=True)]
-        text = sum(ours(driver, cell[0], other, True) for cell, (_, other) in zip(grid, told, strict=True))
+        moved = [(cell[0], other) for cell, (_, other) in zip(grid, told, strict=True)]
+        found = [ours(driver, own, other, step=step) for own, other in moved]
+        text = sum(ours(driver, own, other, True, step) for own, other in moved)
         same = [one == each for one, (each, _) in zip(found, told, strict=True)]
         hits = sum(each for each, _ in told)
-        print(f"{driver.said:<16} {hits:>17} {sum(found):>5}  {sum(same) / len(grid):.2%} {text:>12} collide")
+        print(f"{driver.said:<16} {step:g} s {hits:>17} {sum(found):>5}  {sum(same)} {text:>12} collide")
         for cell, agrees, hit in zip(grid, same, found, strict=True):
             if not agrees:
                 own, its, gap, lateral = cell

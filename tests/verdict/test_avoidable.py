@@ -9,12 +9,16 @@ import numpy as np
 import pytest
 
 from roadgpt.brief.plan import read_scene
+from roadgpt.brief.scenarios import scenario
+from roadgpt.brief.scene import Scene
 from roadgpt.cli.junit import write_junit
 from roadgpt.cli.screen import Row
 from roadgpt.drive import Columns, Drive
 from roadgpt.road import Limits, Road, World
+from roadgpt.road.road import START
 from roadgpt.run import Setup, perform
-from roadgpt.traffic import Tracks
+from roadgpt.traffic import STEP, Tracks
+from roadgpt.traffic.rehearsal import rehearsed
 from roadgpt.verdict import Verdict, judge
 from roadgpt.verdict.careful import CAREFUL, DRIVERS, Moment, drive_on, stopping_distance
 from staged import BOX, among, driven, straight, tracks
@@ -485,3 +489,23 @@ def test_a_gap_that_the_scene_itself_sets_is_not_the_cars_doing(scene_text: str,
     told = verdict(drive, world(scene_text)).description
     kept, least = told.partition("it kept ")[2].partition(" m of UN")[0].split(" m, not the ")
     assert float(kept) < float(least)
+
+
+@pytest.mark.parametrize("name", ["CCRs", "CCRm", "CCRb"])
+def test_the_test_robot_could_have_avoided_whoever_is_ahead(name: str) -> None:
+    """At the ends of speeds and places of impact of the standard grids, moved evenly as the robot is;
+    ``benchmarks/bench_avoidable.py --driver robot`` drives all points."""
+    points = [*scenario(f"ncap:{name}").points("standard", with_road=False)]
+    speeds = [each.values["ego"] for each in points]
+    for point in points:
+        if point.values["ego"] not in (min(speeds), max(speeds)) or point.values["impact"] not in (0, 100):
+            continue
+        v = float(point.values["ego"]) / 3.6
+        road = Road.through([[x, 0] for x in np.arange(0, 25 * v + 150, 20)])
+        among_them = world().changed(scene=point.onto(Scene()), avoidable=point.avoidable)
+        others = rehearsed(road, among_them, 1)
+        assert others is not None
+        tracked = others.tracks()
+        drive = driven(straight(START, LANE, 0, v), STEP * (len(tracked) - 1), road)
+        found = verdict(among(drive, tracked), among_them, road)
+        assert found.outcome == "FAIL", (str(point), found.description)
