@@ -122,9 +122,7 @@ def main() -> None:
     from utility import models, movement
 
     grid = cells()
-    print(
-        f"{len(grid)} cells\n{'driver':<16} step   collisions theirs  ours  agree   by the text of R157"
-    )
+    print(f"{len(grid)} cells\n{'driver':<16} step   collisions theirs  ours  agree   by the text of R157")
     for driver, step in itertools.product(DRIVERS, (STEP, FINE)):
         told = [theirs(driver, cell, models, movement) for cell in grid]
         moved = [(cell[0], other) for cell, (_, other) in zip(grid, told, strict=True)]
