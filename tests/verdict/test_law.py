@@ -19,6 +19,7 @@ from roadgpt.verdict.verdict import Contact
 from staged import Motion, among, driven, straight, tracks
 from verdict.test_incidents import WORLD as ROUTE_WORLD
 from verdict.test_incidents import crossroads
+from verdict.test_incidents import driven as along
 from verdict.test_right_of_way import LEFT, RIGHT, V, moving, node, passing
 
 ROAD = Road.through([[x, 0] for x in range(0, 401, 20)])
@@ -66,6 +67,33 @@ def junction(
     other = moving(x, comes, waits + (x - 10) / V, lambda time: v * time)
     drive = replace(among(drive, tracks(drive.duration, it_1=("car", other))), lights=control == "lights")
     return Case(drive, route, ROUTE_WORLD.changed(speed_limit=limit), said)
+
+
+def crosswalk(said: str, control: str, is_far: bool, waits: float = 0.0) -> Case:
+    """Straight on over crossroads with crosswalks; somebody walks over the one in front or behind."""
+    route = crossroads("straight", control)
+    (junction,) = route.network.junctions
+    walked = tuple(replace(each, crosswalk=True) for each in junction.arms)
+    network = replace(route.network, junctions=(replace(junction, arms=walked),))
+    route = Route.along(network, route.legs).on_ground()
+    drive, (way,) = passing(route, waits), route.passages
+    x = way.end + 2.0 if is_far else way.start - 2.0
+    other = walks(x, 1.5, waits + (x - 10 - 2.0) / V)
+    drive = replace(among(drive, tracks(drive.duration, it_1=("adult", other))), lights=control == "lights")
+    return Case(drive, route, ROUTE_WORLD.changed(speed_limit=30.0), said)
+
+
+def turning(said: str, take: str, y: float) -> Case:
+    """Turns at 6 m/s, and a bicycle that came the same way at its side goes straight on."""
+    route, v = crossroads(take, "priority"), 6.0
+    s = np.arange(10, route.length - 10, 0.02 * v)
+    x, across = route.at(s, -2.0)[:, :2].T
+    drive = along(route, x, across, route.heading(s), v, 0.02)
+    drive = replace(drive, columns=Columns({**drive.columns, "vx": drive["speed"], "z": 0 * s + 0.56}))
+    return Case(
+        among(drive, tracks(drive.duration, it_1=("bicycle", straight(10, y, 0, v)))),
+        route, ROUTE_WORLD.changed(speed_limit=30.0), said,
+    )  # fmt: skip
 
 
 def brakes(time: Any) -> Any:
@@ -122,6 +150,20 @@ def cases() -> dict[str, Case]:
         "cut in short, 11 and 14": road("ego; ; lane; other", EVEN, "car", enters(30, 10, 1.0)),
         "cut in short, own speed": road("ego; speed; lane; both", EVEN, "car", enters(30, 10, 1.0), 12),
         "cut in far ahead, 13": road("other; distance; ; ego", EVEN, "car", enters(70, 6, 1.0)),
+        "own cut in short, 11 and 14": road(
+            "other; lane; ; ego", enters(30, 10, 1.0), "car", straight(10, LANE, 0, 15)
+        ),
+        "own change far ahead, 13": road(
+            "ego; ; distance; other", enters(70, 6, 1.0), "car", straight(10, LANE, 0, 15)
+        ),
+        "on a crosswalk, 21": crosswalk("other; priority; ; ego", "priority", is_far=False),
+        "on the crosswalk behind, 21": crosswalk("other; priority; ; ego", "priority", is_far=True),
+        "walks at red, 21": crosswalk("ego; ; priority; other", "lights", is_far=False, waits=GREEN),
+        "walks at red behind, 21": crosswalk("ego; ; priority; other", "lights", is_far=True, waits=GREEN),
+        "own red at a crosswalk, 23": crosswalk("other; red light; ; ego", "lights", is_far=False, waits=RED),
+        "own red, walks behind, 23": crosswalk("other; red light; ; ego", "lights", is_far=True, waits=RED),
+        "turns right over a bicycle, 16": turning("other; priority; ; ego", "right", -4.2),
+        "passed on the left while it turns left, 11": turning("ego; ; lane; other", "left", 0.2),
         "it comes on the wrong side, 10": road(
             "ego; ; wrong way; other", EVEN, "car", straight(150, LANE, np.pi, 10)
         ),

@@ -10,7 +10,7 @@ commit none.
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,10 +19,10 @@ from roadgpt.brief.scene import VEHICLES
 from roadgpt.network import legs_of, network_of, only_road
 from roadgpt.network.lanes import lanes_of
 from roadgpt.network.markings import CROSSED
-from roadgpt.traffic.actor import SPEED, STEP, STILL, X, Y
+from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y
 from roadgpt.verdict.contact import CORNER
 from roadgpt.verdict.incidents import OVER, OVER_BY, STOOD, STOP_WITHIN, TOO_FAST, limits_at
-from roadgpt.verdict.measures import ACROSS, measure
+from roadgpt.verdict.measures import ACROSS, Boxes, Line, measure
 from roadgpt.verdict.right_of_way import LATER, who_drives
 from roadgpt.verdict.verdict import STANDS, Contact, Fault, Incident, Law, Offence, Party
 
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 LIABLE = (*VEHICLES, "adult", "child")
 BEFORE = 15.0  # m before a junction, within which its lines lie
 RECENT = 3.0  # s before the contact
+TURNS = np.pi / 9  # a turn, of the tested car or of its way through a junction
 BACKS = 0.5  # s: more than rolling back
 BEGINS, BRAKES, APART = 0.4, 3.0, 1.0  # UN R79, 5.6.4.7: s, m/s^2, s
 
@@ -46,7 +47,7 @@ def law_of(road: "Road", drive: "Drive", world: "World", incidents: Sequence[Inc
     assert drive.others is not None
     number = [each.name for each in drive.others.actors].index(str(hit.other))
     way, own, its = _at_junction(road, drive, world, incidents, hit, number) or _on_road(
-        road, drive, world, hit, number
+        road, drive, world, incidents, hit, number
     )
     recent = (drive["time"] > hit.at_time - RECENT) & (drive["time"] <= hit.at_time)
     if _is_fast(drive["speed"][recent], limits_at(road, world, drive["s"][recent]), drive["time"][1]):
@@ -127,7 +128,9 @@ def _at_junction(
     return None
 
 
-def _on_road(road: "Road", drive: "Drive", world: "World", hit: Incident, number: int) -> Found:
+def _on_road(
+    road: "Road", drive: "Drive", world: "World", incidents: Sequence[Incident], hit: Incident, number: int
+) -> Found:
     """Returns what the rules of a road say: who was in the lane in which the two touched, and since when."""
     measured, contact, last = measure(road, drive, world), hit.contact, _sample(hit)
     assert drive.others is not None
@@ -145,25 +148,54 @@ def _on_road(road: "Road", drive: "Drive", world: "World", hit: Incident, number
     if abs(float(spot.t[0])) >= reach - CORNER:
         is_over = abs(mine.t[-1]) > reach and along < 0
         return "other", {"wrong way" if is_over else "lane"}, set()
+    heading = float(drive.others.states[last, number, HEADING])
+    network = network_of(road, world)
+    kerb = 1 if network.left_hand else -1
+    if not stands and any(_turned_across(road, way, hit, heading, kerb) for way in road.passages):
+        return "other", {"priority"}, set()
     if not stands and abs(across) > ACROSS * np.hypot(along, across):
-        s, crossed = float(spot.along[0]), network_of(road, world).crossed
-        is_on_crosswalk = kind in ("adult", "child") and any(
-            (way.departure in crossed and way.end <= s <= way.end + CROSSED)
-            or (way.arrival in crossed and way.start - CROSSED <= s <= way.start
-                and not (drive.lights and way.control == "lights"))
-            for way in road.passages
-        )  # fmt: skip
-        return ("other", {"priority"}, set()) if is_on_crosswalk else ("ego", set(), {"priority"})
+        s, crossed = float(spot.along[0]), network.crossed
+        for way in road.passages if kind in ("adult", "child") else ():
+            arrives = way.arrival in crossed and way.start - CROSSED <= s <= way.start
+            leaves = way.departure in crossed and way.end <= s <= way.end + CROSSED
+            done = {each.kind for each in incidents if way.start - BEFORE < each.at_s <= hit.at_s}
+            if (arrives or leaves) and "red light" in done:
+                return "other", {"red light"}, set()
+            turns = np.cos(np.subtract(*road.heading([way.start, way.end]))) < np.cos(TURNS)
+            if (arrives or leaves) and (not (drive.lights and way.control == "lights") or (leaves and turns)):
+                return "other", {"priority"}, set()
+        return "ego", set(), {"priority"}
     if not stands and along < 0:
         return "ego", set(), {"wrong way" if abs(boxes.t[-1]) < reach else "lane"}
+    if contact.face == "rear" and _came_in_short(line, mine, boxes):
+        return "other", {"lane"}, set()
     if contact.face == "rear" or contact.speed <= STANDS:
         return "ego", set(), {"distance"}
     if contact.face != "front":
         return "ego", set(), {"lane"}
-    out = np.flatnonzero(~line.holds(boxes) & ~np.isnan(boxes.t))
-    if len(out) and (came := int(out[-1]) + 1) <= last:
-        closing = max(mine.velocity[came, 0] - boxes.velocity[came, 0], 0.0)
-        gap = boxes.along[came] - boxes.reach[0][came] - mine.along[came] - drive.car.length / 2
-        if gap < closing * BEGINS + closing**2 / (2 * BRAKES) + boxes.velocity[came, 0] * APART:
-            return "ego", set(), {"lane" if kind in VEHICLES else "priority"}
+    if _came_in_short(line, boxes, mine):
+        return "ego", set(), {"lane" if kind in VEHICLES else "priority"}
     return "other", {"distance"}, set()
+
+
+def _came_in_short(line: Line, ahead: Boxes, behind: Boxes) -> bool:
+    """Returns whether the one ahead came into the lane too short in front of the one behind."""
+    out = np.flatnonzero(~line.holds(ahead) & ~np.isnan(ahead.t))
+    if not len(out) or (came := int(out[-1]) + 1) >= len(ahead.t):
+        return False
+    closing = max(behind.velocity[came, 0] - ahead.velocity[came, 0], 0.0)
+    gap = ahead.along[came] - ahead.reach[0][came] - behind.along[came] - behind.half[came, 0]
+    return bool(gap < closing * BEGINS + closing**2 / (2 * BRAKES) + ahead.velocity[came, 0] * APART)
+
+
+def _turned_across(road: "Road", way: Any, hit: Incident, heading: float, kerb: int) -> bool:
+    """Returns whether the tested car turned at a junction towards the ``kerb`` of its side, 1 on the left and
+    -1 on the right, into the way of one that came beside it and goes straight on, with this heading now."""
+    contact, came, goes = hit.contact, *road.heading([way.start, way.end])
+    assert contact is not None
+    return bool(
+        way.start - CROSSED <= hit.at_s <= way.end + CROSSED
+        and np.sin(goes - came) * kerb > np.sin(TURNS)
+        and np.cos(heading - came) > np.cos(TURNS)
+        and "rear" not in (contact.face, contact.other_face)
+    )
