@@ -411,6 +411,37 @@ def test_a_vehicle_meets_a_tested_car_of_changing_speed_at_a_junction_and_slows_
     assert rows[-1, 3] - rows[0, 3] == pytest.approx(-math.pi / 2, abs=0.05)
 
 
+@pytest.mark.parametrize(
+    ("way", "scene", "goes"),
+    [  # from when on the tested car, at 20 km/h, is fast for a while, so that it is before the other
+        ("right", "car junction left v=50: cross", 7.0),
+        ("right", "car junction opposite v=20: turn_in", 8.0),
+        ("straight", "truck junction right v=20: turn_in", 9.0),
+    ],
+)
+def test_who_was_to_meet_the_tested_car_and_comes_behind_it_follows_as_a_driver(
+    way: str, scene: str, goes: float
+) -> None:
+    plan = f"straight 70 // crossroads {way} none angle=90 // straight 150"
+    run = perform(plan, 1, setup=Setup(reader="plan", drives=False))
+    assert run.road is not None
+
+    def speed(time: float) -> float:
+        fast = 20 / 3.6 + min(max(time - goes, 0.0), 2.0) * 6.0
+        return max(fast - max(time - goes - 2.5, 0.0) * 6.0, 3.0)
+
+    seen = show(f"ego v=20; {scene}", run.road, 24.0, speed=speed, world=run.world)
+    apart = [
+        Polygon(corners(np.array([car[0], car[1], 0.0, car[2]]), BOX)).distance(
+            Polygon(corners(other, seen.actors[0].size))
+        )
+        for car, other in zip(seen.car, seen.states[:, 0], strict=True)
+        if other[0] == other[0]
+    ]
+    assert min(apart) > 1.0
+    assert 3.0 < apart[-1] < 15.0  # it does come, and keeps 1 s and 1 m
+
+
 def test_who_comes_from_behind_is_there_from_50_m_before_the_road_on() -> None:
     seen = show("ego v=50; bus behind thw=5 v=50", lasts=8.0)
     first = int(np.flatnonzero(~np.isnan(seen.states[:, 0, 0]))[0])

@@ -290,8 +290,6 @@ class Act:
         self.beyond = 0.0 if self.way.road_stations is None else on_road
         """How far before the begin and behind the end of its way it is there."""
         self.put(self.s)
-        self.minds = self.where == "behind" and "overtake" in whats
-        """Whether it drives behind the tested car as behind others until it has left its lane."""
         self.hits: bool | None = None
         """Whether it hit the tested car from behind when it first touched it; None if it has not."""
         self.ahead: tuple[float, float] | None = None
@@ -633,6 +631,16 @@ class Act:
         return is_behind and one.first not in LEAVES and room < max(one.v - two.v, 0.0) ** 2 / 2 / EASY
 
     @property
+    def minds(self) -> bool:
+        """Whether it drives behind the tested car as behind others: who comes from behind to overtake it, and
+        others who have done all that they do, or are late where they meet it."""
+        if self.where == "behind":
+            return any(deed.what == "overtake" for deed in self.deeds)
+        is_late = self.meeting and self.car.s - self.car.length / 2 > self.meeting.car
+        has_done = not self.meeting and self.begun == len(self.deeds) and not self.phases
+        return self.hits is None and bool(is_late or has_done)
+
+    @property
     def is_gone(self) -> bool:
         """Whether it has left the road, or its way."""
         return self.state() is None and self.forward * (self.s - self.way.length / 2) > 0
@@ -700,7 +708,8 @@ class Act:
             if self.matches:
                 missing = way - self._planned(eta)
                 faster = math.copysign(min(abs(missing) / CATCH_UP, math.sqrt(4.0 * abs(missing))), missing)
-                least = 0.0 if self.state() is None else 0.5  # it does not wait for a car that waits for it
+                # it does not wait for a car that waits for it
+                least = 0.0 if self.state() is None and self.car.v > STILL else 0.5
                 self.goal = min(max(self.cruise + faster, least * self.cruise), 1.5 * self.cruise)
 
     def _eta(self) -> float:

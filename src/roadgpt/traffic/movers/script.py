@@ -8,7 +8,7 @@ import numpy as np
 
 from roadgpt.brief.scene import DOINGS, HEAD_ON, LEAVES, MOST_MORE
 from roadgpt.road.road import START
-from roadgpt.traffic.acting import BEHIND, ONCOMING, STANDS, Act, Car
+from roadgpt.traffic.acting import BEHIND, INTO, ONCOMING, STANDS, Act, Car
 from roadgpt.traffic.actor import HEADING, SIZES, STILL, Actor, FloatArray, TestedCar, corners
 from roadgpt.traffic.boxes import touch
 from roadgpt.traffic.following import ALONG
@@ -136,6 +136,7 @@ class Script:
             ahead = math.copysign(act.forward, act.forward * act.v)
             apart = ahead * (along - act.s)
             gap = apart - half - act.size.length / 2
+            gap[-1] -= INTO * abs(act.v) * (act.where != "behind")  # the headway with which it follows
             later = left + aside * np.maximum(gap, 0.0) / abs(act.v)
             later[number:] = left[number:]
             sides = [act.t] if act.slide is None else [act.t, act.slide.begin + act.slide.by]
@@ -144,7 +145,7 @@ class Script:
                 to = np.abs(left - sides[-1]) if act.slide else np.inf
                 near = np.where(np.abs(speed) < STILL, to, near)
             is_ahead = (apart > SPACING) & (gap < IN_SIGHT) & (near < wide + act.size.width / 2 + BESIDE)
-            is_ahead[-1] &= act.minds
+            is_ahead[-1] &= act.minds and ahead * speed[-1] >= ALONG * car.speed
             if is_ahead.any():
                 first = int(np.where(is_ahead, gap, np.inf).argmin())
                 act.ahead = float(gap[first]), float(ahead * speed[first])
