@@ -8,17 +8,12 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from shapely import (
-    LineString,
-    Polygon,
-    get_coordinates,
-    line_interpolate_point,
-    line_locate_point,
-    points,
-)
+from scipy.spatial import KDTree
+from shapely import LineString, Polygon, get_coordinates
 from shapely.affinity import rotate, translate
 
 from roadgpt.run import Run
+from roadgpt.traffic.actor import corners
 
 X, Y, _, HEADING, SPEED = range(5)
 REFERENCE = {"adult": 0.06, "child": 0.0405, "bicycle": -0.015}
@@ -35,7 +30,9 @@ class Measured:
         assert run.road is not None
         self.run, self.drive, self.others = run, run.drive, run.drive.others
         s = np.arange(0.0, run.road.length, 0.25)
-        self.path = LineString(run.road.at(s, run.world.profile_of(run.road).middle(s))[:, :2])
+        line = run.road.at(s, run.world.profile_of(run.road).middle(s))[:, :2]
+        self.path, self._nearest = LineString(line), KDTree(line)
+        self._stations = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
         time = self.drive["time"]
         self.time = time[np.isclose(time * 10, np.rint(time * 10), atol=1e-6)]
         if self.others is not None:
@@ -55,18 +52,15 @@ class Measured:
 
     def along(self, x: Any, y: Any) -> tuple[Any, Any]:
         """Stations on the middle of the tested car's lane, and metres to its left; NaN where nobody is."""
-        places = np.column_stack([np.ravel(x), np.ravel(y)])
-        there = ~np.isnan(places[:, 0])
-        s = np.full(len(places), np.nan)
-        s[there] = line_locate_point(self.path, points(places[there]))
-        around = np.clip(np.nan_to_num(s)[:, None] + [-0.5, 0.0, 0.5], 0.0, self.path.length)
-        near = get_coordinates(line_interpolate_point(self.path, around)).reshape(-1, 3, 2)
-        way = near[:, 2] - near[:, 0]
+        places = np.nan_to_num(np.column_stack([np.ravel(x), np.ravel(y)]), nan=1e6)
+        line = get_coordinates(self.path)
+        at = np.clip(self._nearest.query(places)[1], 1, len(line) - 2)
+        way = line[at + 1] - line[at - 1]
         way /= np.hypot(*way.T)[:, None]
-        away = places - near[:, 1]
-        beyond = (s <= 0.0) | (s >= self.path.length)  # who drives on beyond the road
-        s += np.where(beyond, way[:, 0] * away[:, 0] + way[:, 1] * away[:, 1], 0.0)
-        return s, way[:, 0] * away[:, 1] - way[:, 1] * away[:, 0]
+        away = places - line[at]
+        s = self._stations[at] + way[:, 0] * away[:, 0] + way[:, 1] * away[:, 1]
+        t = way[:, 0] * away[:, 1] - way[:, 1] * away[:, 0]
+        return np.where(places[:, 0] < 1e6, [s, t], np.nan)
 
     def size(self, who: int) -> tuple[float, float]:
         return self.others.actors[who].size[:2]
@@ -208,6 +202,55 @@ class Measured:
         """The greatest acceleration sideways, over 0.4 s."""
         t = self._t(who)
         return float(np.nanmax(np.abs(t[8:] - 2 * t[4:-4] + t[:-8])) / 0.16)
+
+    def begins(self, who: int, want: float) -> float:
+        return self.onset(who)
+
+    def to(self, who: int, want: float) -> float:
+        """The speed at last, also after the event."""
+        return float(self.others.states[-1, who, SPEED] * 3.6)
+
+    def _ends(self, who: int) -> Any:
+        """From where to where a box is along the lane, and across it."""
+        x, y, heading, _ = self.other(who, 0.0)
+        box = corners(np.array([x, y, 0.0, heading]), self.others.actors[who].size)
+        return [(min(each), max(each)) for each in self.along(*box.T)]
+
+    def clear(self, who: int, want: float) -> float:
+        """From the middle of the lane to who stands beside it."""
+        return float(np.abs(self._ends(who)[1]).min())
+
+    def before(self, who: int, want: float) -> float:
+        """Along the lane to the side of the first actor, who crosses."""
+        (s,), _ = self.along(*self.other(0, [self.event])[:2])
+        return float(s - self.size(0)[1] / 2 - self._ends(who)[0][1])
+
+    def apart(self, who: int, want: float) -> float:
+        """Between it and the next actor."""
+        pairs = zip(self._ends(who), self._ends(who + 1), strict=True)
+        return float(max(max(a[0] - b[1], b[0] - a[1]) for a, b in pairs))
+
+    def friction(self, who: int, want: float) -> float:
+        """The least."""
+        return min(map(self.run.world.friction_at, np.arange(0.0, 100.0)))
+
+    def _slippery(self) -> Any:
+        """Where friction changes."""
+        s = np.arange(0.0, 100.0, 0.1)
+        return s[1:][np.diff([self.run.world.friction_at(each) for each in s]) != 0]
+
+    def first(self, who: int, want: float) -> float:
+        return float(self._slippery()[0])
+
+    def second(self, who: int, want: float) -> float:
+        return float(self._slippery()[2])
+
+    def third(self, who: int, want: float) -> float:
+        return float(self._slippery()[4])
+
+    def long(self, who: int, want: float) -> float:
+        first = self._slippery()
+        return _worst(first[1::2] - first[::2], want)
 
     def rate(self, who: int, want: float) -> float:
         """How fast its speed changes in m/s2, in the middle of its first change."""

@@ -2,7 +2,8 @@
 written from Euro NCAP's standard ranges (Vector's CA-FC 2026), ASAM's set for UN R157, CARLA's leaderboard
 and NHTSA's typology with FMVSS No. 127. Each number has its tolerance, and whose that is: "NCAP" (the tested
 car's speed within 0.5 km/h and its path within 0.05 m, the place of impact within 0.05 m, the gap before
-braking within 0.5 m), else "ours": 0.5 m/s (1.8 km/h), 0.5 m, 0.3 m/s2, 0.1 s."""
+braking within 0.5 m, that between parked cars within 0.1 m), else "ours": 0.5 m/s (1.8 km/h), 0.5 m,
+0.3 m/s2, 0.1 s, and 0.01 of a friction."""
 
 # ruff: noqa: E501 - a table
 
@@ -11,15 +12,24 @@ from typing import NamedTuple
 
 WIDTH = 1.86  # m, of the tested car; 0.05 m of it in percent are within its places of impact
 OURS = {
-    "km/h": 1.8, "m": 0.5, "m/s": 0.5, "m/s2": 0.3, "s": 0.1, "%": 100 * 0.05 / WIDTH,
+    "km/h": 1.8, "m": 0.5, "m/s": 0.5, "m/s2": 0.3, "s": 0.1, "%": 100 * 0.05 / WIDTH, "": 0.01,
 }  # fmt: skip
 UNITS = {
-    "ego": "km/h", "speed": "km/h", "keeps": "km/h", "keeps_own": "km/h",
+    "ego": "km/h", "speed": "km/h", "to": "km/h", "keeps": "km/h", "keeps_own": "km/h",
     "at_first": "km/h", "rate": "m/s2",
-    "sideways": "m/s", "sideways_rate": "m/s2", "headway": "s", "starts": "s", "impact": "%",
+    "sideways": "m/s", "sideways_rate": "m/s2", "headway": "s", "starts": "s", "begins": "s", "impact": "%",
+    "friction": "",
 }  # fmt: skip
 """Of what is measured (see ``measured.py``); all else is in metres."""
-OF_NCAP = {"ego": 0.5, "aside": 0.05, "impact": OURS["%"], "past": 0.05, "flank": 0.05, "gap": 0.5}
+OF_NCAP = {
+    "ego": 0.5,
+    "aside": 0.05,
+    "impact": OURS["%"],
+    "past": 0.05,
+    "flank": 0.05,
+    "gap": 0.5,
+    "apart": 0.1,
+}
 
 
 class Row(NamedTuple):
@@ -44,7 +54,15 @@ def _ahead(speed: float, impact: float) -> dict[str, float]:
 
 
 def _braking(speed: float, impact: float) -> dict[str, float]:
-    return {"at_first": speed, "headway": 1.0, "gap": speed / 3.6, "rate": -4.0, "impact": impact}
+    return {
+        "at_first": speed,
+        "headway": 1.0,
+        "gap": speed / 3.6,
+        "rate": -4.0,
+        "to": 2,
+        "impact": impact,
+        "begins": 3,
+    }
 
 
 def _crossing(speed: float, impact: float, first: float, run_up: float, steady: float) -> dict[str, float]:
@@ -61,6 +79,7 @@ def _trigger(ego: float, speed: float, run_up: float, steady: float) -> dict[str
 
 
 STANDS = {"keeps": 0.0}
+HIDING = STANDS | {"before": 4.8}  # m, from the parked cars to the bicycle, along the tested car's lane
 
 PRESCRIBED: tuple[Row, ...] = tuple(
     row
@@ -92,7 +111,11 @@ PRESCRIBED: tuple[Row, ...] = tuple(
         _rows("ncap:CPFA ego=10 light=night", 10, _crossing(8, 50, 6, 1.5, 4.5)),
         _rows("ncap:CPNA", 50, _crossing(5, 25, -4, 1, 3)),
         _rows("ncap:CPNA ego=60 impact=75", 60, _crossing(5, 75, -4, 1, 3)),
-        _rows("ncap:CPNCO", 50, _crossing(5, 50, -4, 1, 3), STANDS, STANDS),
+        # 1 m from the tested car's side to the parked cars, from their front to the child, and between them
+        _rows(
+            "ncap:CPNCO", 50, _crossing(5, 50, -4, 1, 3),
+            STANDS | {"clear": 1 + WIDTH / 2, "before": 1, "apart": 1}, STANDS | {"clear": 1 + WIDTH / 2},
+        ),
         _rows("ncap:CPLA", 50, _longitudinal(5, 1, 10, 50) | _trigger(50, 5, 1, 10)),
         _rows("ncap:CPLA ego=80 impact=25 steady_path=18", 80, _longitudinal(5, 1, 18, 25) | _trigger(80, 5, 1, 18)),
         _rows("ncap:CBLA", 50, _longitudinal(15, 3.5, 28, 50) | _trigger(50, 15, 3.5, 28)),
@@ -102,8 +125,8 @@ PRESCRIBED: tuple[Row, ...] = tuple(
         ),
         _rows("ncap:CBNA", 50, _crossing(15, 50, -20.5, 3.5, 17)),
         _rows("ncap:CBNA ego=60 impact=75", 60, _crossing(15, 75, -20.5, 3.5, 17)),
-        _rows("ncap:CBNAO", 50, _crossing(10, 50, -8, 3.5, 4.5), STANDS, STANDS),
-        _rows("ncap:CBNAO ego=60 impact=75", 60, _crossing(10, 75, -8, 3.5, 4.5), STANDS, STANDS),
+        _rows("ncap:CBNAO", 50, _crossing(10, 50, -8, 3.5, 4.5), HIDING | {"clear": 3.55, "apart": 0.2}, HIDING),
+        _rows("ncap:CBNAO ego=60 impact=75", 60, _crossing(10, 75, -8, 3.5, 4.5), HIDING, HIDING),
         _rows("ncap:CBFA", 50, _crossing(20, 50, 28, 6, 22)),
         _rows("ncap:CBFA ego=60 impact=25", 60, _crossing(20, 25, 28, 6, 22)),
         _rows("r157:free_driving", 60),
@@ -121,9 +144,9 @@ PRESCRIBED: tuple[Row, ...] = tuple(
         _rows("r157:crossing_pedestrian", 60, {"speed": 5, "left": -5, "starts": 3.6, "meets": 0}),
         _rows("r157:crossing_pedestrian ego=10", 10, {"speed": 5, "left": -5, "starts": 3.6}),
         _rows("r157:multiple_blocking_targets", 60, {"keeps": 0, "lead": 100, "between": 15}, STANDS),
-        _rows("r157:follow_lead_vehicle_comfortable", 60, {"at_first": 60, "headway": 1.6, "rate": 1.0}),
+        _rows("r157:follow_lead_vehicle_comfortable", 60, {"at_first": 60, "headway": 1.6, "rate": 1.0, "to": 42}),
         _rows("r157:follow_lead_vehicle_comfortable offset=1.75 ego=20", 20, {"at_first": 20, "left": 1.75, "rate": 1.0}),
-        _rows("r157:follow_lead_vehicle_emergency_brake", 60, {"at_first": 60, "headway": 1.6, "rate": -6.0}),
+        _rows("r157:follow_lead_vehicle_emergency_brake", 60, {"at_first": 60, "headway": 1.6, "rate": -6.0, "to": 0}),
         _rows(
             "r157:follow_lead_vehicle_emergency_brake ego=20 headway=1.2 model=truck offset=-1.75", 20,
             {"at_first": 20, "headway": 1.2, "rate": -6.0, "left": -1.75},
@@ -146,13 +169,13 @@ PRESCRIBED: tuple[Row, ...] = tuple(
         _rows("r157:cut_out_multiple_blocking_targets model=truck", 60, {"keeps": 60, "to_the_next": 50}, {"between": 15}, STANDS),
         _rows("r157:forward_detection_range", 60, {"keeps": 0, "lead": 100, "left": -5.25}),
         _rows("r157:lateral_detection_range", 60, {"keeps": 60, "lead": 0, "left": -7, "last_left": -1.75, "sideways_rate": 0.1}),
-        _rows("leaderboard:control_loss", 54),
-        _rows("leaderboard:lead_vehicle_brakes", 36, {"at_first": 36, "gap": 25, "rate": -8}),
+        _rows("leaderboard:control_loss", 54, {"friction": 0.3, "first": 14, "second": 48, "third": 74, "long": 10}),
+        _rows("leaderboard:lead_vehicle_brakes", 36, {"at_first": 36, "gap": 25, "rate": -8, "to": 0}),
         _rows("leaderboard:lead_vehicle_brakes gap=10 deceleration=4", 36, {"at_first": 36, "gap": 10, "rate": -4}),
         _rows("leaderboard:crossing_without_prior_action", 36, {"speed": 12, "start_distance": 13}, STANDS),
         _rows("leaderboard:crossing_after_turn", 20, {"speed": 10, "behind_junction": 8, "meets": 0}),
         _rows("leaderboard:crossing_after_turn distance=3 turn=left", 20, {"speed": 10, "behind_junction": 3, "meets": 0}),
-        _rows("leaderboard:slow_leader", 55, {"at_first": 55, "gap": 35}, {"keeps": 45, "left": 3.5}),
+        _rows("leaderboard:slow_leader", 55, {"at_first": 55, "gap": 35, "to": 17}, {"keeps": 45, "left": 3.5}),
         _rows("leaderboard:obstacle_with_oncoming_traffic", 36, {"keeps": 0, "left": 0}, {"keeps": 20, "between": 44.7}, {"keeps": 20}),
         _rows("leaderboard:red_light_runner", 40, {"keeps_own": 40, "meets": 0}),
         _rows("leaderboard:unprotected_left_turn", 20, {"keeps_own": 25, "meets": 0}),
@@ -160,7 +183,7 @@ PRESCRIBED: tuple[Row, ...] = tuple(
         _rows("leaderboard:right_turn_crossing_traffic ego=15 target=50", 15, {"meets": 0}),
         _rows("leaderboard:unsignalised_crossing", 30, {"keeps_own": 30, "meets": 0}),
         _rows("nhtsa:lead_vehicle_stopped", 56, _ahead(0, 50)),
-        _rows("nhtsa:lead_vehicle_decelerating", 80, {"at_first": 80, "gap": 40, "rate": -4.9, "impact": 50}),
+        _rows("nhtsa:lead_vehicle_decelerating", 80, {"at_first": 80, "gap": 40, "rate": -4.9, "to": 0, "impact": 50, "begins": 3}),
         _rows("nhtsa:lead_vehicle_decelerating ego=50 target=50 gap=12 deceleration=2.9", 50, {"at_first": 50, "gap": 12, "rate": -2.9}),
         _rows("nhtsa:lead_vehicle_slower", 80, _ahead(20, 50)),
         _rows("nhtsa:changing_lanes_same_direction", 89, {"keeps": 79, "gap": 10, "sideways": 1.5, "left": 3.5}),

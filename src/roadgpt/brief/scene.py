@@ -152,7 +152,9 @@ NUMBERS: Mapping[str, Number] = {
     "faster": Number("dv", -250, 250, "at {} km/h more than the tested car", (*ALONG, "ramp")),
     "overlap": Number("overlap", 0, 100, "covering {} percent of the tested car's width", ALONG),
     "impact": Number("impact", -200, 300, "aimed at {} percent of the tested car's width", (*ALONG, *ACROSS)),
-    "offset": Number("t", -10, 10, "{} metres left of the lane's middle", (*ALONG, "ramp", "roundabout")),
+    "offset": Number(
+        "t", -10, 10, "{} metres left of the lane's middle", (*ALONG, "ramp", "roundabout", "junction")
+    ),
     "away": Number("away", 0, 200, "{} metres from the tested car's path", ACROSS),
     "fog": Number("fog", 5, 1000, "fog with a visual range of {} metres"),
     "rain": Number("rain", 0.1, 200, "rain of {} mm/h"),

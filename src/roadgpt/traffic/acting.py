@@ -243,7 +243,7 @@ class Act:
         self.limited: dict[int, tuple[str, bool]] = {}
         """Of the actions that ask for more than there is, in words with how much less they were done, and
         whether the scene says the number and the road does not give it; -1 is its speed."""
-        self.way, self.shift, self.t = path, 0.0, 0.0
+        self.way, self.shift, self.t = path, 0.0, self.n.get("offset", 0.0)
         """From a station of its way, ``shift`` leads to that of the tested car's lane beside it; ``t`` is how
         far it is to the left of its way."""
         self.meeting: Meeting | None = None

@@ -30,13 +30,13 @@ def rehearsed(
     traffic, way, v = begin(road, world, seed), Way.along(road, world), world.first_speed
     if traffic is None:
         return None
-    first = min(START, road.length / 2)
+    first = way.from_road(min(START, road.length / 2))
     for n in count():
         time = n * STEP
-        s = first + v * time
+        s = way.to_road(first + v * time)
         if s > road.length - GOAL or (time > LASTS and v < SLOWEST):
             break
-        x, y, _, heading = way.pose(way.from_road(s) + ahead)
+        x, y, _, heading = way.pose(first + v * time + ahead)
         t = float(world.profile_of(road).middle(s))
         traffic.advance(TestedCar(x, y, heading, v, s, t, size.length, size.width))
     return traffic
