@@ -285,7 +285,6 @@ class Act:
         """Whether it comes to its meeting when the tested car does."""
         self.uncovers = False
         """Whether it leaves its lane in time before those who stand there."""
-        self.v = v
         inside = 0.0 if self.way.road_stations is None else self.size.length / 2 - 0.01
         comes = v > 0 or self.where == "behind"
         self.there = -BEYOND if inside and comes else inside, self.way.length - inside
@@ -456,9 +455,7 @@ class Act:
     def _beside(self) -> float:
         """Returns the station along the tested car's lane where somebody is at first who is along it."""
         n, car, v, length = self.n, self.car, self.v, self.size.length
-        apart = length + STANDS + BEHIND * v
-        if self.forward < 0:
-            apart = max(apart, ONCOMING + length)
+        apart = length + max(STANDS + BEHIND * v, ONCOMING * (self.forward < 0))
         if self.where == "behind" or (self.first == "overtake" and self.forward > 0):
             apart = -apart
         if "station" in n or "lead" in n:
@@ -642,14 +639,13 @@ class Act:
         return self.hits is None and bool(is_late or has_done)
 
     @property
-    def is_gone(self) -> bool:
-        """Whether it has left the road, or its way."""
-        return self.state() is None and self.forward * (self.s - self.way.length / 2) > 0
+    def gone(self) -> float:
+        """How far it has gone on its way."""
+        return self.s if self.forward > 0 else self.way.length - self.s
 
     def state(self) -> tuple[float, ...] | None:
         """Returns its state; None while it is not there: its box is not yet, or no longer, on its way."""
-        gone = self.s if self.forward > 0 else self.way.length - self.s
-        if not self.there[0] <= gone <= self.there[1]:
+        if not self.there[0] <= self.gone <= self.there[1]:
             return None
         x, y, z, heading = self.way.pose(self.s, self.t)
         turned = math.atan(self.slope)
@@ -710,25 +706,22 @@ class Act:
             if self.matches:
                 missing = way - self._planned(eta)
                 faster = math.copysign(min(abs(missing) / CATCH_UP, math.sqrt(4.0 * abs(missing))), missing)
-                # it does not wait for a car that waits for it
-                least = 0.0 if self.state() is None and self.car.v > STILL else 0.5
+                least = 0.5 if self.state() or self.car.v < STILL else 0.0  # else both would wait
                 self.goal = min(max(self.cruise + faster, least * self.cruise), 1.5 * self.cruise)
 
     def _eta(self) -> float:
         """The seconds until the tested car is where they meet, as fast as both are now."""
-        if self.faces:
-            gap, rate = self.gap()
-            return gap / max(-rate, 1e-3)
-        assert self.meeting is not None
-        return (self.meeting.car - self.car.s - self.car.length / 2) / max(self.car.v, 1e-3)
+        if self.meeting and not self.faces:
+            return (self.meeting.car - self.car.s - self.car.length / 2) / max(self.car.v, 1e-3)
+        gap, rate = self.gap()
+        return gap / max(-rate, 1e-3)
 
     def _planned(self, eta: float) -> float:
         """Returns how far it is to be from its meeting so many seconds before it."""
         n = self.cue
         if not {"to", "accel"} & {*n} or {"station", "gap", "headway"} & {*n}:
             assert self.meeting is not None
-            is_along = self.way is self.path
-            return self.cruise * eta if is_along else self.way.before(self.meeting.own, self.cruise, eta)
+            return self.way.before(self.meeting.own, self.cruise, eta)
         last, goal = n.get("ttc", LAST), n.get("to", self.cruise)
         if {"time", "distance"} & {*n}:
             last = min(max(eta - self.wait(self.deeds[0]), 0.0), eta)
@@ -825,10 +818,8 @@ class Act:
 
     def _pull(self, speed: float) -> float:
         """Returns with which acceleration it starts to move if it will have this speed."""
-        if self.kind in PULL:
-            return PULL[self.kind]
-        pull = speed**2 / 2 / (RUNNING_PATH if speed > RUNS else PATH)
-        return min(max(pull, 0.1), QUICKEST)
+        path = RUNNING_PATH if speed > RUNS else PATH
+        return PULL.get(self.kind) or min(max(speed**2 / 2 / path, 0.1), QUICKEST)
 
     def _phases(self, deed: Deed) -> list[Phase]:  # noqa: C901 - a table
         """Returns what an action consists of, seen from where it begins."""

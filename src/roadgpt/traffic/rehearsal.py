@@ -19,14 +19,8 @@ LASTS, SLOWEST = 120.0, 1.0  # s, after which a drive among others that is slowe
 def rehearsed(
     road: "Road", world: "World", seed: int, size: Size = SIZES["car"], ahead: float = 0.0
 ) -> Traffic | None:
-    """Returns the others after the rehearsal, who tell what happened; None if there are none.
-
-    Args:
-        road: the road that the tested car drives.
-        world: the World, whose scene it is.
-        seed: the seed of the drive.
-        size: the box of the tested car.
-        ahead: metres from its centre of gravity to the middle of its box."""
+    """Returns the others after the rehearsal, who tell what happened; None if there are none. The middle of
+    the tested car's box, of a ``size``, is ``ahead`` metres before its centre of gravity."""
     traffic, way, v = begin(road, world, seed), Way.along(road, world), world.first_speed
     if traffic is None:
         return None
