@@ -64,7 +64,7 @@ APART = 0.05  # m, between who leaves a lane and who stands there
 CLEAR = 0.6  # share of a change of lanes after which one is clear of a car in the lane that is left
 HEADWAY = 2.0  # s, of who is ahead
 BEHIND = 1.5  # s, of who is behind, and of several alike one behind another
-BEYOND = 50.0  # m before the road on which somebody drives along, where it is there already
+BEYOND = 50.0  # m before the begin and behind the end of the road, where who drives along it is still there
 INTO = 1.0  # s of headway with which one turns in or merges ahead of the tested car
 STANDS = 2.0  # m between several alike that stand
 FARTHEST = 60.0  # m, from which somebody comes to cross at a time to collision that is said
@@ -285,10 +285,9 @@ class Act:
         """Whether it comes to its meeting when the tested car does."""
         self.uncovers = False
         """Whether it leaves its lane in time before those who stand there."""
-        inside = 0.0 if self.way.road_stations is None else self.size.length / 2 - 0.01
-        comes = v > 0 or self.where == "behind"
-        self.there = -BEYOND if inside and comes else inside, self.way.length - inside
-        """From where to where on its way it is there, in metres that it has gone."""
+        on_road = BEYOND if v > 0 or self.where == "behind" else 0.01 - self.size.length / 2
+        self.beyond = 0.0 if self.way.road_stations is None else on_road
+        """How far before the begin and behind the end of its way it is there."""
         self.put(self.s)
         self.hits: bool | None = None
         """Whether it hit the tested car from behind when it first touched it; None if it has not."""
@@ -639,13 +638,13 @@ class Act:
         return self.hits is None and bool(is_late or has_done)
 
     @property
-    def gone(self) -> float:
-        """How far it has gone on its way."""
-        return self.s if self.forward > 0 else self.way.length - self.s
+    def is_gone(self) -> bool:
+        """Whether it has left the road, or its way."""
+        return self.state() is None and self.forward * (self.s - self.way.length / 2) > 0
 
     def state(self) -> tuple[float, ...] | None:
         """Returns its state; None while it is not there: its box is not yet, or no longer, on its way."""
-        if not self.there[0] <= self.gone <= self.there[1]:
+        if not -self.beyond <= self.s <= self.way.length + self.beyond:
             return None
         x, y, z, heading = self.way.pose(self.s, self.t)
         turned = math.atan(self.slope)

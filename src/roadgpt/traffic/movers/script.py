@@ -180,7 +180,7 @@ class Script:
             if number < act.begun and act.meeting and act.car.s > act.meeting.car:
                 why = LATE
             elif act.state() is None:
-                why = "it had left the road" if act.gone > act.there[1] else "it was not on the road yet"
+                why = "it had left the road" if act.is_gone else "it was not on the road yet"
             elif not act.deeds[number].is_open and act.wait(act.deeds[number]) == math.inf:
                 why = "what it waits for did not come"
             found.append(f"{NEVER} {_did(actor, act, number)}: {why}")
