@@ -165,7 +165,7 @@ def drive(job):
         stuck,
         mover.vehicles,
         spent,
-        f"{len(mover.actors)} came, {mover.waiting} wait",
+        f"{len(mover.actors)} came, {sum(mover.waits.values())} wait",
     )
 
 

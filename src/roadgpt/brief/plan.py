@@ -565,8 +565,7 @@ def _marked(head: list[str], thing: Role | Action, language: _Language) -> str:
 
 def read_scene(text: str) -> Scene:
     """Returns the scene that stands in a plan behind &&. Raises BriefError if a word, key or number is not
-    part of the language, or the scene contradicts itself.
-    """
+    part of the language, or the scene contradicts itself."""
     return _made(Scene, scene_fields(text), text)
 
 

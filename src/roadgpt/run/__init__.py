@@ -103,8 +103,7 @@ def perform(
         ChatError: a language model could not be reached, or gave no usable answer.
         UsageError: a plug-in is not installed, the driver's file does not define a driver, or the simulator
             cannot apply a setting of the world.
-        DriverError: the driver hung while it was created.
-    """
+        DriverError: the driver hung while it was created."""
     check_parts(setup, world)
     begun = time.perf_counter()
     meter = meter or Meter.of(setup.chat)
@@ -124,8 +123,7 @@ def perform(
 
 def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Meter | None = None) -> Brief:
     """Returns the Brief that the setup's reader reads from the words. The Brief is checked against the size
-    of the world's map and the world's other limits.
-    """
+    of the world's map and the world's other limits."""
     with counting(meter or Meter.of(setup.chat), "reading"):
         try:
             limits = (world.site.map_size, world.limits.min_radius, world.limits.max_grade)
@@ -158,8 +156,7 @@ def prove(
         brief: the requirements that the road has to meet; None if there are no requirements.
         despite_findings: whether to drive a road that breaks rules, as roads of real maps often do. The Run
             then has both the findings and the verdict. A road that is physically impossible to drive is never
-            driven.
-    """
+            driven."""
     design, drawn = (None, blueprint.profile) if isinstance(blueprint, Road) else (blueprint, blueprint)
     world = setup.staged(world, bool(drawn and drawn.left_hand)).in_scene_of(brief).on_surface_of(brief)
     check_parts(setup, world)

@@ -80,8 +80,7 @@ def alone_in(folder: Path) -> Iterator[None]:
     """Locks a folder for this process inside a ``with`` block, and creates the folder if it does not exist.
 
     The system releases the lock if the process is killed. Its file stays: another process that had just
-    opened it would hold a lock on a deleted file, and Windows cannot delete open files.
-    """
+    opened it would hold a lock on a deleted file, and Windows cannot delete open files."""
     with ExitStack() as stack:
         try:
             folder.mkdir(parents=True, exist_ok=True)

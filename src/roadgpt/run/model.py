@@ -36,8 +36,7 @@ class Setup(Parts):
     """Whether roads are driven; if False, they are only designed and checked."""
     chat: ChatSettings | None = None
     """The language model for readers and designers that use one; None for the model in the user's
-    settings.
-    """
+    settings."""
 
     @model_serializer(mode="wrap")
     def _to_file(self, fields: SerializerFunctionWrapHandler) -> dict[str, Any]:
@@ -196,8 +195,7 @@ def seed_of(seed: int, index: int) -> int:
     """Returns the seed of road ``index`` (from 1) of the campaign with seed ``seed``.
 
     The seed comes from numpy's SeedSequence, so that campaigns with consecutive seeds, such as 1 and 2, have
-    no road in common. numpy guarantees that SeedSequence gives the same numbers in all versions.
-    """
+    no road in common. numpy guarantees that SeedSequence gives the same numbers in all versions."""
     if seed < 0:
         raise UsageError(f"{seed} is no seed; give a whole number from 0 up")
     drawn = np.random.SeedSequence([seed, index]).generate_state(1, np.uint64)[0]

@@ -111,8 +111,7 @@ def judge(
     with others on the road they are found again.
 
     Raises:
-        UsageError: The drive was stopped at a smaller tolerance than ``world.limits.oob_tolerance``.
-    """
+        UsageError: The drive was stopped at a smaller tolerance than ``world.limits.oob_tolerance``."""
     road = world.lay(road)
     has_incidents = only_road(road, world) is None or drive.others is not None
     incidents = tuple[Incident, ...]()

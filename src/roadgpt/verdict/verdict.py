@@ -209,8 +209,7 @@ class Verdict:
         """Returns the fields and ``kept`` as JSON data, for ``Verdict.from_json``.
 
         The fields from ``incidents`` on, and ``other`` and ``contact`` of incidents, are left out where they
-        are None.
-        """
+        are None."""
         names = [each.name for each in fields(self)]
         optional = {*names[names.index("incidents") :], "other", "contact"}
 
@@ -225,8 +224,7 @@ class Verdict:
         """Returns the Verdict from the result of ``to_json``.
 
         Raises:
-            UsageError: a field is missing or unknown, or its value is invalid.
-        """
+            UsageError: a field is missing or unknown, or its value is invalid."""
         try:
             return strictly(cls, {key: value for key, value in data.items() if key != "kept"})
         except (AttributeError, TypeError, ValueError) as error:

@@ -61,8 +61,6 @@ class IdmMover:
         """Prepares the flow of the stage's scene, or another one; ``is_filled`` is whether it is there at
         the start."""
         self.actors: list[Actor] = []
-        self.waiting = 0
-        """How many vehicles wait outside for room."""
         self._seed, self._is_filled = stage.seed, is_filled
         self.comes_in = True
         road, network = stage.road, network_of(stage.road, stage.world)
@@ -90,14 +88,14 @@ class IdmMover:
         self._free = list(range(size - 1, 0, -1))
         self._entries = np.zeros((size * 12, 5))
         self._room = np.full(len(self.ids), math.inf)
-        self._waits = dict.fromkeys(np.flatnonzero(self.lanes.begins).tolist(), 0)
+        self.waits = dict.fromkeys(np.flatnonzero(self.lanes.begins).tolist(), 0)
         scene = stage.world.scene
         usual = DENSITY.get(flow or scene.flow or "none", 0.0)
         self._density = np.full(len(self.ids), usual)  # vehicles for each metre of each lane
         if flow is None and scene.oncoming is not None:
             for n in _against(network, self.ids, self._path[1]):
                 self._density[n] = DENSITY.get(scene.oncoming, 0.0)
-        self._begin_density = self._density[list(self._waits)]
+        self._begin_density = self._density[list(self.waits)]
         is_road = self.lanes.junction < 0  # ways through a junction lie over each other
         self._wanted = float((self._density * self.lanes.length)[is_road].sum())
         self._tick, self._step = 0, f.step
@@ -253,23 +251,22 @@ class IdmMover:
     def _let_in(self) -> None:
         """Lets vehicles in: the flow is the density times the speed that is driven now, more if there are
         fewer on the map than there should be, and less if there are more."""
-        if not self._waits:
+        if not self.waits:
             return
         speeds = self._numbers[self._rows, f.V]
         pace = float(speeds.mean()) if len(speeds) else float(self.lanes.limit.mean())
         rate = pace * min(max(2.0 - len(speeds) / max(self._wanted, 1.0), 0.0), 2.0)
-        come = self._rng.random(len(self._waits)) < rate * self._begin_density * STEP
-        for lane, comes in zip(self._waits, come.tolist(), strict=True):
-            self._waits[lane] += comes
-            if not self._waits[lane]:
+        come = self._rng.random(len(self.waits)) < rate * self._begin_density * STEP
+        for lane, comes in zip(self.waits, come.tolist(), strict=True):
+            self.waits[lane] += comes
+            if not self.waits[lane]:
                 continue
             gap, firm = self._room[lane] - 5.0 - f.JAM, min(f.FIRM, self._ease[lane])
             fastest = gap / 1.5, math.sqrt(2.0 * firm * max(gap, 0.0)), self._stoppable(lane, 0.0)
             speed = min(float(self.lanes.limit[lane]), *fastest)
             if gap > 8.0 and speed >= min(LEAST_SPEED, float(self.lanes.limit[lane])):
                 self.enter(lane, 0.0, speed)
-                self._waits[lane] -= 1
-        self.waiting = sum(self._waits.values())
+                self.waits[lane] -= 1
 
     def _tidy(self) -> None:
         """Takes out who has left, and plans on for who needs it."""
