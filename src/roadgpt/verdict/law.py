@@ -10,7 +10,7 @@ commit none.
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -148,11 +148,15 @@ def _on_road(
     if abs(float(spot.t[0])) >= reach - CORNER:
         is_over = abs(mine.t[-1]) > reach and along < 0
         return "other", {"wrong way" if is_over else "lane"}, set()
-    heading = float(drive.others.states[last, number, HEADING])
-    network = network_of(road, world)
+    network, heading = network_of(road, world), float(drive.others.states[last, number, HEADING])
     kerb = 1 if network.left_hand else -1
-    if not stands and any(_turned_across(road, way, hit, heading, kerb) for way in road.passages):
-        return "other", {"priority"}, set()
+    is_beside = not stands and "rear" not in (contact.face, contact.other_face)
+    for way in road.passages if is_beside else ():
+        came, goes = road.heading([way.start, way.end])
+        is_turn = np.sin(goes - came) * kerb > np.sin(TURNS)  # towards its kerb; who is there goes on
+        is_there = way.start - CROSSED <= hit.at_s <= way.end + CROSSED
+        if is_turn and is_there and np.cos(heading - came) > np.cos(TURNS):
+            return "other", {"priority"}, set()
     if not stands and abs(across) > ACROSS * np.hypot(along, across):
         s, crossed = float(spot.along[0]), network.crossed
         for way in road.passages if kind in ("adult", "child") else ():
@@ -186,16 +190,3 @@ def _came_in_short(line: Line, ahead: Boxes, behind: Boxes) -> bool:
     closing = max(behind.velocity[came, 0] - ahead.velocity[came, 0], 0.0)
     gap = ahead.along[came] - ahead.reach[0][came] - behind.along[came] - behind.half[came, 0]
     return bool(gap < closing * BEGINS + closing**2 / (2 * BRAKES) + ahead.velocity[came, 0] * APART)
-
-
-def _turned_across(road: "Road", way: Any, hit: Incident, heading: float, kerb: int) -> bool:
-    """Returns whether the tested car turned at a junction towards the ``kerb`` of its side, 1 on the left and
-    -1 on the right, into the way of one that came beside it and goes straight on, with this heading now."""
-    contact, came, goes = hit.contact, *road.heading([way.start, way.end])
-    assert contact is not None
-    return bool(
-        way.start - CROSSED <= hit.at_s <= way.end + CROSSED
-        and np.sin(goes - came) * kerb > np.sin(TURNS)
-        and np.cos(heading - came) > np.cos(TURNS)
-        and "rear" not in (contact.face, contact.other_face)
-    )
