@@ -140,6 +140,6 @@ def test_a_design_speed_leaves_the_speed_limit_and_says_so() -> None:
     brief, world = Brief(speed=100), World()
     found = world_for(brief, world)
     assert found.limits == world.limits
-    assert "designed for 100 km/h, but driven at 70 km/h" in speed_remark(brief, found)
-    assert not speed_remark(brief, found.changed(speed_limit=100 / 3.6))
-    assert not speed_remark(Brief(), found)
+    assert "designed for 100 km/h, but driven at 70 km/h" in speed_remark(brief, world, found)
+    assert not speed_remark(brief, world.changed(speed_limit=100 / 3.6), found)
+    assert not speed_remark(Brief(), world, found)

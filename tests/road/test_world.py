@@ -69,7 +69,7 @@ def test_a_scene_is_one_text_of_a_file_and_absent_without_one() -> None:
 @pytest.mark.parametrize(
     ("given", "stands", "friction"),
     [
-        ("", "", 0.6),  # an empty scene takes that of the words away
+        ("", "", 1.0),  # an empty scene takes all that the words say away
         ("light", "light; night; ice", 0.1),
         ("snow", "medium; night; snow", 0.35),
         ("rain 5", "medium; rain 5; night; ice", 0.1),
