@@ -443,13 +443,15 @@ class Act:
         if "away" not in self.n:
             return max(met.own - NEAR, self.size.length / 2)
         before = self.way.stations <= met.own
-        far = np.abs(self.path.locate(*self.way.points[before, :2].T)[1]) >= self.n["away"] - SPACING / 2
-        if not far.any():
+        apart = np.abs(self.path.locate(*self.way.points[before, :2].T)[1])
+        far = np.flatnonzero(apart >= self.n["away"] - SPACING / 2)
+        if not len(far):
             raise SceneError(
                 f"the road of the {self.kind} at the junction begins less than {self.n['away']:g} m from the "
                 "tested car's path; give it less away="
             )
-        return float(self.way.stations[far.nonzero()[0][-1]])
+        near = slice(max(far[-1] - 1, 0), far[-1] + 2)
+        return float(np.interp(-self.n["away"], -apart[near], self.way.stations[before][near]))
 
     def _beside(self) -> float:
         """Returns the station along the tested car's lane where somebody is at first who is along it."""
