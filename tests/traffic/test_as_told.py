@@ -39,6 +39,13 @@ def test_who_has_priority_drives_on_and_the_tested_car_goes_after_it(plan: str) 
     assert np.isnan(speed[-1]) or run.drive.others.states[-1, 0, 4] > 2.0
 
 
+@pytest.mark.parametrize("who", ["bicycle junction right v=0 away=7", "car junction right v=0 away=12"])
+def test_who_stands_at_a_junction_with_priority_goes_when_the_tested_car_waits_for_it(who: str) -> None:
+    run = drive(f"crossroads straight none angle=90 && ego v=40; {who}: cross to=15")
+    assert run.outcome == "PASS", run.description
+    assert np.nanmax(tracks(run)[:, 0, 4]) == pytest.approx(15 / 3.6, abs=0.1)
+
+
 @pytest.mark.parametrize("speed", [0, 1])
 def test_a_car_that_stands_or_crawls_at_first_comes_to_lights(speed: int) -> None:
     run = drive(f"crossroads straight lights && ego v={speed}; car junction left: run_light", "robot")

@@ -70,6 +70,7 @@ STANDS = 2.0  # m between several alike that stand
 FARTHEST = 60.0  # m, from which somebody comes to cross at a time to collision that is said
 ONCOMING = 40.0  # m between several alike that come towards the tested car
 NEAR = 10.0  # m before the meeting, where a vehicle waits at a junction
+WAITS = 30.0  # m before the meeting, in which a tested car that stands is held to wait for who stands there
 LATERAL: Mapping[What, float] = {
     "swerve": 0.5, "drift": 0.5, "cut_in": 1.5, "cut_out": 1.5, "change_lane": 1.0, "overtake": 1.5,
     "pull_out": 1.0, "wrong_way": 1.0,
@@ -635,14 +636,8 @@ class Act:
         others who have done all that they do, or are late where they meet it."""
         if self.where == "behind":
             return any(deed.what == "overtake" for deed in self.deeds)
-        is_late = self.meeting and self.car.s - self.car.length / 2 > self.meeting.car
-        has_done = not self.meeting and self.begun == len(self.deeds) and not self.phases
-        return self.hits is None and bool(is_late or has_done)
-
-    @property
-    def is_gone(self) -> bool:
-        """Whether it has left the road, or its way."""
-        return self.state() is None and self.forward * (self.s - self.way.length / 2) > 0
+        has_done = self.begun == len(self.deeds) and not self.phases
+        return self.hits is None and (self._apart() < -self.car.length if self.meeting else has_done)
 
     def state(self) -> tuple[float, ...] | None:
         """Returns its state; None while it is not there: its box is not yet, or no longer, on its way."""
@@ -712,10 +707,12 @@ class Act:
 
     def _eta(self) -> float:
         """The seconds until the tested car is where they meet, as fast as both are now."""
-        if self.meeting and not self.faces:
-            return (self.meeting.car - self.car.s - self.car.length / 2) / max(self.car.v, 1e-3)
-        gap, rate = self.gap()
+        gap, rate = (self._apart(), -self.car.v) if self.meeting and not self.faces else self.gap()
         return gap / max(-rate, 1e-3)
+
+    def _apart(self) -> float:
+        """How far the front of the tested car is before where they meet."""
+        return self.meeting.car - self.car.s - self.car.length / 2 if self.meeting else math.inf
 
     def _planned(self, eta: float) -> float:
         """Returns how far it is to be from its meeting so many seconds before it."""
@@ -754,7 +751,8 @@ class Act:
             return max(before, room / max(self.v, 1e-3))
         if self.begun:
             return before
-        if self.meeting and self.waits and (car.v > STILL or car.s > self.start + 1.0):
+        is_waited_for = car.s < self.start + 1.0 or self._apart() < WAITS
+        if self.meeting and self.waits and (car.v > STILL or not is_waited_for):
             way = self.forward * (self.meeting.own - self.s)
             return self._eta() - time_over(0.0, max(way, 0.0), *self._starts(n))
         return soon - LAST if meets and not self.waits else self.rolls - self.time
@@ -806,8 +804,8 @@ class Act:
         """Returns the distance to the tested car from bumper to bumper, and how fast it grows; of those in
         other lanes, it is negative where they are beside or behind the car. Of who crosses, it is that to
         where the paths meet."""
-        if self.crosses and self.meeting:
-            return self.meeting.car - self.car.s - self.car.length / 2, -self.car.v
+        if self.crosses:
+            return self._apart(), -self.car.v
         apart, away = self.along - self.car.s, self.forward * self.v - self.car.v
         sign = -1 if apart < 0 and self.where in IN_LANE else 1
         return sign * apart - self.half, sign * away

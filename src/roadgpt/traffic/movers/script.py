@@ -180,7 +180,8 @@ class Script:
             if number < act.begun and act.meeting and act.car.s > act.meeting.car:
                 why = LATE
             elif act.state() is None:
-                why = "it had left the road" if act.is_gone else "it was not on the road yet"
+                is_gone = act.forward * (act.s - act.way.length / 2) > 0
+                why = "it had left the road" if is_gone else "it was not on the road yet"
             elif not act.deeds[number].is_open and act.wait(act.deeds[number]) == math.inf:
                 why = "what it waits for did not come"
             found.append(f"{NEVER} {_did(actor, act, number)}: {why}")
