@@ -233,8 +233,7 @@ class Act:
         self.forward = -1 if self.is_along and is_against else 1
         """1 along its way, -1 against it."""
         stands = self.kind not in MOVING or self.where == "parked" or self.crosses
-        stands |= self.where == "beside" and "speed" not in self.n
-        stands |= comes
+        stands |= comes or (self.where == "beside" and "speed" not in self.n)
         if stands and self.deeds:  # where it begins to act is where it is
             self.n |= {"station": self.cue.pop("station")} if "station" in self.cue else {}
             if self.is_along and self.deeds[0].is_open:
