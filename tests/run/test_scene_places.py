@@ -106,7 +106,8 @@ def rehearsal(plan: str) -> tuple[float, float]:
 def test_where_the_action_says_so_the_two_come_into_each_others_path(plan: str) -> None:
     apart, lines = rehearsal(plan)
     assert lines < 0.5
-    assert apart < 8.0  # who turns in does so 1 s ahead
+    # Who turns in does so 1 s ahead: at 20 km/h 5.6 m from bumper to bumper, between cars of 4.7 m.
+    assert apart < (10.8 if "turn_in" in plan else 8.0)
 
 
 @pytest.mark.parametrize(
