@@ -168,7 +168,7 @@ def test_a_boundary_encloses_what_is_paved(seed: int) -> None:
     for name, junction in here.junctions.items():
         segments = boundary_of(here, junction)
         for one, two in zip(segments, [*segments[1:], segments[0]], strict=True):
-            assert one[-1] == pytest.approx(two[0], abs=NEAR / 5)
+            assert one[-1] == pytest.approx(two[0], abs=NEAR / 10)
         points = np.array([point for segment in segments for point in segment])
         is_new = np.hypot(*(np.roll(points, -1, axis=0) - points).T) > 1e-6
         ring = shapely.LinearRing(points[is_new])

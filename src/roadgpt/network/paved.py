@@ -28,16 +28,16 @@ ISLAND = 7.0  # m^2, area of the smallest island where roads cross (AASHTO Green
 NEAR = 1e-3  # m, largest distance from a junction to a hole that the junction encloses
 
 
-def paved_by(roads: Sequence[Road]) -> Area:
+def paved_by(roads: Sequence[Road], sag: float = SAG) -> Area:
     """Returns the area that carriageways of roads cover together; holes up to ``SLIVER`` m^2 are filled."""
-    return covered_by(areas_of(roads))
+    return covered_by(areas_of(roads, sag))
 
 
-def areas_of(roads: Sequence[Road]) -> NDArray[np.object_]:
+def areas_of(roads: Sequence[Road], sag: float = SAG) -> NDArray[np.object_]:
     """Returns the area of the carriageway of each road, as a valid polygon without edges that cross."""
     import shapely
 
-    areas = ribbons(roads)
+    areas = ribbons(roads, sag)
     # where a road turns more tightly than it is wide, its ribbon crosses itself
     crossed = ~shapely.is_valid(areas)
     areas[crossed] = shapely.make_valid(areas[crossed])
@@ -106,7 +106,7 @@ def ribbon(road: Road) -> "Polygon":
     return found
 
 
-def ribbons(roads: Sequence[Road]) -> NDArray[np.object_]:
+def ribbons(roads: Sequence[Road], sag: float = SAG) -> NDArray[np.object_]:
     """Returns one polygon for each road: its carriageway, beginning with the right edge.
 
     The line that separates the two directions of traffic has a corner of the polygon at each end, because
@@ -116,7 +116,7 @@ def ribbons(roads: Sequence[Road]) -> NDArray[np.object_]:
 
     if not roads:
         return np.array([], object)
-    stations = [stations_of(road) for road in roads]
+    stations = [stations_of(road, sag) for road in roads]
     centre, heading = along_all([_pieces_of(road) for road in roads], stations)
     to_left = np.stack((-np.sin(heading), np.cos(heading)), axis=-1)
     profiles = [road.profile for road in roads if road.profile is not None]

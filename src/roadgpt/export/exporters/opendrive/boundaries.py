@@ -24,6 +24,7 @@ from roadgpt.network.paved import outline_of, paved_by, stations_of
 if TYPE_CHECKING:
     from shapely import LinearRing
 
+CHORD = 0.0005  # m, largest distance between an edge and the chords along which the outline follows it
 NEAR = 0.0005  # m, between the outline and the edge that it follows, whose corners are rounded
 ROUNDING = 0.01  # m; a station this close to an end of its road is written as "start" or "end"
 SHORT = 0.002  # m; shorter pieces of the outline come from rounding and are left out
@@ -171,11 +172,11 @@ class PavedOutline:
         roads = [network.road(each.road) for each in junction.connections]
         edges = []
         for member in roads:
-            s = stations_of(member.road)
+            s = stations_of(member.road, CHORD)
             left, right = member.profile.edges(s)
             for lane, t in ((0, left), (-member.profile.count[0], right)):
                 edges.append(Edge(member.id, lane, s, member.road.at(s, t)[:, :2]))
-        paved = paved_by([member.road for member in roads])
+        paved = paved_by([member.road for member in roads], CHORD)
         return cls(shapely.LinearRing(outline_of(paved)), tuple(edges))
 
     def between(self, start: Array, end: Array) -> Iterator[tuple[Edge, Value, Value]]:
@@ -212,8 +213,6 @@ class PavedOutline:
         ring = np.asarray(self.ring.coords, float)
         along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(ring, axis=0).T))][:-1]
         first, last = (float(shapely.line_locate_point(self.ring, shapely.Point(p))) for p in (start, end))
-        length = self.ring.length
-        room = (last - first) % length
-        places = (along - first) % length
+        room, places = (last - first) % self.ring.length, (along - first) % self.ring.length
         inside = np.flatnonzero((places > SHORT) & (places < room - SHORT))
         return np.vstack((start, ring[:-1][inside[np.argsort(places[inside])]], end))
