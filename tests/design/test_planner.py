@@ -159,7 +159,7 @@ def test_a_short_ramp_between_level_straights_is_as_steep_as_asked(
 ADVICE = [
     (Brief(clauses=(turns(20, "hairpin"),)), "20 hairpins do not fit on a 250 m map.*--map-size"),
     (Brief(clauses=(turns(8, "hairpin", side="left"),)), "8 hairpins do not fit"),
-    (Brief(clauses=(turns(6),), length=exactly(60)), "do not fit into a road of 54 to 66 m"),
+    (Brief(clauses=(turns(6),), length=exactly(60)), "^6 turns do not fit into a road of 54 to 66 m"),
     (Brief(climb=exactly(150)), "a climb of 127.5 to 172.5 m does not fit"),
     (Brief(clauses=(turns(1, radius=exactly(8)),)), "tighter than the 14.33 m"),
     (

@@ -4,6 +4,7 @@ A road length or a map size is suggested only after a road has been drafted with
 
 from collections import Counter
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from math import ceil, floor, inf, log10
 from typing import Any
@@ -42,12 +43,12 @@ def advice(
     the reasons why drafts failed. ``boxes`` are the sides in metres of the smallest squares around the drafts
     that were too large for the map."""
     reason = main_reason(failed)
-    wishes = _wishes_of(outline)
     if reason in FOR_ROOM:
         found = _offer(brief, world, trial, roomier(world, boxes))
         crossing = " without crossing" if reason == "over itself" else ""
-        return f"{wishes} not fit on a {world.site.map_size:g} m map{crossing}; {found}"
+        return f"{_wishes_of(outline)} not fit on a {world.site.map_size:g} m map{crossing}; {found}"
     if reason == "longer than was asked for":
+        wishes = _wishes_of(replace(outline, length=None))
         return f"{wishes} not fit into a road of {outline.length} m; ask for a longer road or for fewer turns"
     if reason == "like an earlier road":
         return "every further road is like an earlier one; ask for fewer roads or leave more open"
@@ -87,8 +88,7 @@ def _wishes_of(outline: Outline) -> str:
     parts = [group.counted for group in outline.groups if group.feature.kind == "turn"]
     if not parts and 1 < outline.turns.lo < inf:
         parts = [f"{outline.turns} turns"]
-    long = outline.length and outline.length.lo > 0
-    parts += [ROAD["length"].asked.format(outline.length)] if long else []
+    parts += [ROAD["length"].asked.format(outline.length)] if outline.length and outline.length.lo > 0 else []
     parts += [ROAD["climb"].asked.format(outline.climb)] if outline.climb else []
     if not parts:
         parts = ["the straights that were asked for" if outline.groups else "a road of this kind"]
