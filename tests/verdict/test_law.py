@@ -46,10 +46,10 @@ def road(said: str, own: Motion, kind: str, other: Motion, limit: float = 30.0) 
 
 def junction(
     said: str, control: str, comes: float, waits: float = 0.0, v: float = V, limit: float = 30.0,
-    stops: bool = False, cross: str = "",
+    stops: bool = False, cross: str = "", starts: bool = False,
 ) -> Case:  # fmt: skip
     """At crossroads, straight on with 10 m/s, somebody from a side is there when the tested car is; it
-    ``stops`` at its line first. ``cross`` is another sign of the arms across."""
+    ``stops`` at its line first, or ``starts`` 6 m before. ``cross`` is another sign of the arms across."""
     route = crossroads("straight", control)
     if cross:
         (junction,) = route.network.junctions
@@ -64,7 +64,8 @@ def junction(
         own = {"x": x, "s": x, "speed": np.where(still, 0.0, V), "vx": np.where(still, 0.0, V)}
         drive, waits = replace(drive, columns=Columns({**drive.columns, **own})), waits + 3.0
     x = node(route) + 2.0 * np.sin(comes)
-    other = moving(x, comes, waits + (x - 10) / V, lambda time: v * time)
+    at = waits + (x - 10) / V
+    other = moving(x, comes, at, lambda time: v * np.maximum(time, at - 6.0 / v if starts else 0.0))
     drive = replace(among(drive, tracks(drive.duration, it_1=("car", other))), lights=control == "lights")
     return Case(drive, route, ROUTE_WORLD.changed(speed_limit=limit), said)
 
@@ -134,6 +135,12 @@ def cases() -> dict[str, Case]:
             "other; priority; speed; both", "yield", RIGHT, v=14, limit=12
         ),
         "from the right, 18": junction("other; priority; ; ego", "none", RIGHT),
+        "stood in the junction, from the right, 18": junction(
+            "other; priority; ; ego", "none", RIGHT, starts=True
+        ),
+        "stood in the junction, with a stop sign, 18": junction(
+            "ego; ; priority; other", "priority", LEFT, starts=True, cross="stop"
+        ),
         "from the left, 18": junction("ego; ; priority; other", "none", LEFT),
         "into a slow leader, 13": road("other; distance; ; ego", EVEN, "car", straight(60, LANE, 0, 5)),
         "into who brakes, 13": road("other; distance; ; ego", straight(80, LANE, 0, 15), "car", brakes),

@@ -99,7 +99,7 @@ def _at_junction(
             for key in (lanes.met_by(leg) if leg.road in network.connection_of else ())
             if key.road in network.connection_of
             and network.connection_of[key.road][1].incoming != network.connection_of[leg.road][1].incoming
-            for who, begins, _, leaves in who_drives(others, lanes[key], 0.0)
+            for who, begins, _, leaves in who_drives(others, lanes[key], 0.0, np.inf)
             if who == number and begins <= time <= leaves + LATER
         ]
         if not ways:
@@ -109,7 +109,8 @@ def _at_junction(
         states = others.states[: int(begins / STEP) + 1, number]
         away = np.hypot(*(states[:, [X, Y]] - states[-1, [X, Y]]).T) - (before.before_line or 0.0)
         crossed = int(np.flatnonzero(away > 0).max(initial=-1)) + 1  # the first with its front past the line
-        shown = lights_of(road, world, drive.seed).shown(arm, STEP * crossed) if drive.lights else GREEN
+        lit = drive.lights and begins > 0  # not for who was in the junction from the beginning on
+        shown = lights_of(road, world, drive.seed).shown(arm, STEP * crossed) if lit else GREEN
         done = {each.kind for each in incidents if start - BEFORE < each.at_s <= hit.at_s}
         red, its_red = "red light" in done, shown == RED
         way: Party | None = "other" if key in lanes.gives_way_to(leg) else None
@@ -119,7 +120,7 @@ def _at_junction(
         near = (away > 0) & (away <= STOP_WITHIN)
         if "stop line" in done:
             own.add("stop")
-        if before.control == "stop" and not (np.abs(states[near, SPEED]) < STOOD).any():
+        if before.control == "stop" and begins and not (np.abs(states[near, SPEED]) < STOOD).any():
             its.add("stop")
         if way is not None and not (red or its_red):
             (own if way == "other" else its).add("priority")

@@ -90,9 +90,11 @@ def taken(
         yield "failure to yield", time, others.actors[number].name
 
 
-def who_drives(others: "Tracks", lane: Lane, place: float) -> Iterator[tuple[int, float, float, float]]:
-    """Yields for everybody who drives along a lane, from its start on: the number, and when its front comes
-    into the lane, comes to a station, and leaves the lane or was seen last."""
+def who_drives(
+    others: "Tracks", lane: Lane, place: float, begins: float = BEGINS
+) -> Iterator[tuple[int, float, float, float]]:
+    """Yields for everybody who drives along a lane, seen there within ``begins`` metres of its start: the
+    number, and when its front comes into the lane, comes to a station, and leaves it or was seen last."""
     import shapely
 
     half = np.array([each.size.length for each in others.actors]) / 2
@@ -109,6 +111,6 @@ def who_drives(others: "Tracks", lane: Lane, place: float) -> Iterator[tuple[int
         own = np.flatnonzero(who == number)
         for rows in np.split(own, np.flatnonzero(np.diff(step[own]) > 1) + 1):
             there = rows[s[rows] >= place]
-            if s[rows[0]] <= BEGINS and len(there):
+            if s[rows[0]] <= begins and len(there):
                 first, at, last = (float(step[k]) * STEP for k in (rows[0], there[0], rows[-1]))
                 yield int(number), first, at, last
