@@ -442,14 +442,20 @@ def test_who_was_to_meet_the_tested_car_and_comes_behind_it_follows_as_a_driver(
     assert 3.0 < apart[-1] < 15.0  # it does come, and keeps 1 s and 1 m
 
 
-def test_who_comes_from_behind_is_there_from_50_m_before_the_road_on() -> None:
-    seen = show("ego v=50; bus behind thw=5 v=50", lasts=8.0)
+def test_who_comes_from_behind_appears_when_its_place_is_on_the_road() -> None:
+    seen = show("ego v=50; bus behind thw=1 v=50", lasts=8.0)
     first = int(np.flatnonzero(~np.isnan(seen.states[:, 0, 0]))[0])
     assert first > 0
-    before = Point(seen.states[first, 0, :2]).distance(Point(seen.path.coords[0]))
-    assert 50 - 50 / 3.6 * STEP <= before < 50.02
-    apart = np.hypot(*(seen.states[first:, 0, :2] - seen.car[first:, :2]).T)
-    np.testing.assert_allclose(apart - (12 + BOX.length) / 2, 5 * 50 / 3.6, atol=0.03)
+    assert 6.0 - 0.02 <= seen.along(0)[first] < 6.0 + 50 / 3.6 * STEP  # half a bus is 6 m
+    np.testing.assert_allclose(seen.gap(0)[first:], 50 / 3.6, atol=0.03)
+
+
+@pytest.mark.parametrize("ahead", ["car ahead", "car ahead v=50; truck ahead"])
+def test_who_has_nothing_more_to_do_leaves_where_the_road_ends(ahead: str) -> None:
+    seen = show(f"ego v=50; {ahead}", lasts=70.0)
+    end = Point(seen.path.coords[-1])
+    there = seen.states[~np.isnan(seen.states[..., 0])]
+    assert 1.0 < min(end.distance(Point(each[:2])) for each in there) < 10.0  # half a vehicle at least
 
 
 @cache

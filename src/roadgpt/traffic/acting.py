@@ -64,7 +64,7 @@ APART = 0.05  # m, between who leaves a lane and who stands there
 CLEAR = 0.6  # share of a change of lanes after which one is clear of a car in the lane that is left
 HEADWAY = 2.0  # s, of who is ahead
 BEHIND = 1.5  # s, of who is behind, and of several alike one behind another
-BEYOND = 50.0  # m before the begin and behind the end of the road, where who drives along it is still there
+BEYOND = 50.0  # m off the road: behind a car that stands at its begin, or at its end with something to do
 INTO = 1.0  # s of headway with which one turns in or merges ahead of the tested car
 STANDS = 2.0  # m between several alike that stand
 FARTHEST = 60.0  # m, from which somebody comes to cross at a time to collision that is said
@@ -285,9 +285,8 @@ class Act:
         """Whether it comes to its meeting when the tested car does."""
         self.uncovers = False
         """Whether it leaves its lane in time before those who stand there."""
-        on_road = BEYOND if v > 0 or self.where == "behind" else 0.01 - self.size.length / 2
-        self.beyond = 0.0 if self.way.road_stations is None else on_road
-        """How far before the begin and behind the end of its way it is there."""
+        self.inside = 0.0 if self.way.road_stations is None else self.size.length / 2 - 0.01
+        """How far its middle is at least from the ends of its way, or it is not there."""
         self.put(self.s)
         self.hits: bool | None = None
         """Whether it hit the tested car from behind when it first touched it; None if it has not."""
@@ -640,7 +639,10 @@ class Act:
 
     def state(self) -> tuple[float, ...] | None:
         """Returns its state; None while it is not there: its box is not yet, or no longer, on its way."""
-        if not -self.beyond <= self.s <= self.way.length + self.beyond:
+        is_behind = self.where == "behind" and not self.world.first_speed
+        acts = self.v > 0 and len(self.shown) < len(self.deeds)
+        first, last = (-BEYOND if self.inside and each else self.inside for each in (is_behind, acts))
+        if not first <= self.s <= self.way.length - last:
             return None
         x, y, z, heading = self.way.pose(self.s, self.t)
         turned = math.atan(self.slope)

@@ -251,8 +251,6 @@ class IdmMover:
     def _let_in(self) -> None:
         """Lets vehicles in: the flow is the density times the speed that is driven now, more if there are
         fewer on the map than there should be, and less if there are more."""
-        if not self.waits:
-            return
         speeds = self._numbers[self._rows, f.V]
         pace = float(speeds.mean()) if len(speeds) else float(self.lanes.limit.mean())
         rate = pace * min(max(2.0 - len(speeds) / max(self._wanted, 1.0), 0.0), 2.0)
