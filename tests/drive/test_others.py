@@ -182,15 +182,36 @@ def test_nobody_leaves_no_trace(crash: tuple[Drive, Straight, Tracks]) -> None:
     assert done.stdout == "[]\n"
 
 
+def test_who_is_gone_has_no_numbers_and_files_of_before_are_read(
+    crash: tuple[Drive, Straight, Tracks], tmp_path: Path
+) -> None:
+    states = crash[0].others.states.copy()  # type: ignore[union-attr]
+    states[:4, 1] = np.nan
+    drive = replace(crash[0], others=Tracks(crash[0].others.actors, states))  # type: ignore[union-attr]
+    with np.load(io.BytesIO(drive.to_bytes())) as archive:
+        parts = {name: np.array(archive[name]) for name in archive.files}
+    assert np.isnan(parts["others"][:4, 1]).all()
+    np.testing.assert_array_equal(parts["others"][..., 0], np.rint(1000 * states[..., 0]))
+    np.savez(
+        tmp_path / "drive.npz", **parts | {"others": np.nan_to_num(parts["others"], nan=-(2**62)).astype(int)}
+    )
+    others = Drive.load(tmp_path / "drive.npz").others
+    assert others is not None
+    np.testing.assert_array_equal(others.states, states)
+
+
 @pytest.mark.parametrize(
     ("change", "why"),
     [
         (lambda parts: parts.pop("others"), "others"),
         (lambda parts: parts["header"].pop("others"), "unknown: others"),
         (lambda parts: parts.update(others=parts["others"][:, :2]), "five whole numbers"),
-        (lambda parts: parts.update(others=parts["others"].astype(float)), "five whole numbers"),
+        (lambda parts: parts.update(others=parts["others"].astype(np.float32)), "five whole numbers"),
+        (lambda parts: parts.update(others=parts["others"] + 0.5), "five whole numbers"),
+        (lambda parts: parts["others"].__setitem__((3, 1, 2), np.inf), "five whole numbers"),
         (lambda parts: parts.update(others=parts["others"][:5]), "until the end"),
         (lambda parts: parts["others"].__setitem__((3, 1, 2), -(2**62)), "as a whole"),
+        (lambda parts: parts["others"].__setitem__((3, 1, 2), np.nan), "as a whole"),
         (lambda parts: parts["header"]["others"][0].__setitem__(1, "tank"), "tank"),
         (lambda parts: parts["header"]["others"][0].__setitem__(2, [1, 0, 1]), "sizes above 0"),
         (lambda parts: parts["header"]["others"][0].__setitem__(0, "bus 3"), "different names"),

@@ -46,7 +46,7 @@ class Trace(NamedTuple):
     header: dict[str, Any]
     """What the drive has beside its columns, as ``drive.packed`` returns it."""
     rows: Whole  # the columns in their order, ``(columns, n)``
-    others: NDArray[np.int64] | None = None
+    others: NDArray[Any] | None = None
     """The states of others on the road, as ``drive.packed`` returns them."""
 
 

@@ -48,8 +48,7 @@ COLUMNS = {
 TOLD = ("missed", "limited", "stopped")  # of others: tuples of texts
 RARE = ("handovers", "lights", *TOLD)  # of a header, only where they are not empty
 OTHERS = "others"
-"""Name of the array of the others' states: whole numbers of shape (samples, actors, 5); GONE while an actor
-is not there."""
+"""Array of the others' states: whole numbers (samples, actors, 5); NaN, in older files GONE, of who is away."""
 PER_UNIT = np.array([1e3, 1e3, 1e3, 1e4, 1e3])  # of these numbers in a m, m, m, rad, m/s
 GONE = -(2**62)
 LARGEST, UNPACKED = 50_000_000, 200_000_000  # bytes of the file, and of its content: seven hours of driving
@@ -253,7 +252,7 @@ def _checked(header: Any, arrays: Mapping[str, NDArray[Any]]) -> Drive:
     return unpacked(header, Columns({name: arrays[name] for name in COLUMNS}), states)
 
 
-def packed(drive: Drive) -> tuple[dict[str, Any], NDArray[np.int64] | None]:
+def packed(drive: Drive) -> tuple[dict[str, Any], NDArray[np.float64] | None]:
     """Returns what a Drive has beside its columns, as JSON data, and the states of others as whole numbers,
     from which ``unpacked`` makes an equal Drive."""
     header: dict[str, Any] = {name: getattr(drive, name) for name in ("driver", "simulator", "seed", "ended")}
@@ -262,7 +261,7 @@ def packed(drive: Drive) -> tuple[dict[str, Any], NDArray[np.int64] | None]:
     if drive.others is None:
         return header, None
     header[OTHERS] = [[each.name, each.kind, each.size] for each in drive.others.actors]
-    return header, np.nan_to_num(np.rint(drive.others.states * PER_UNIT), nan=GONE).astype(np.int64)
+    return header, np.asarray(np.rint(drive.others.states * PER_UNIT) + 0.0)
 
 
 def unpacked(header: Any, columns: Columns, states: NDArray[Any] | None) -> Drive:
@@ -288,13 +287,15 @@ def _tracks(actors: Any, states: NDArray[Any], duration: float) -> "Tracks":
     from roadgpt.traffic import STEP, Actor, Size, Tracks
 
     rows = strictly(tuple[tuple[str, ActorKind, tuple[float, float, float]], ...], actors)
-    if states.dtype != np.int64 or states.ndim != 3 or states.shape[1:] != (len(rows), len(PER_UNIT)):
+    is_gone = (states == GONE) | np.isnan(states)
+    is_whole = states.dtype in (np.int64, np.float64)
+    is_whole &= bool((is_gone | ((np.rint(states) == states) & np.isfinite(states))).all())
+    if not is_whole or states.ndim != 3 or states.shape[1:] != (len(rows), len(PER_UNIT)):
         raise ValueError("others have five whole numbers for each sample and actor")
     if len(states) * STEP < duration:
         raise ValueError("others have a sample every 0.1 s until the end")
     if len({name for name, *_ in rows}) < len(rows) or min([1.0, *(min(size) for _, _, size in rows)]) <= 0:
         raise ValueError("others have different names, and sizes above 0")
-    is_gone = states == GONE
     if (is_gone.any(axis=2) != is_gone.all(axis=2)).any():
         raise ValueError("an actor is there as a whole, or not")
     found = tuple(Actor(name, kind, Size(*size)) for name, kind, size in rows)
@@ -302,8 +303,7 @@ def _tracks(actors: Any, states: NDArray[Any], duration: float) -> "Tracks":
 
 
 def add_array(archive: zipfile.ZipFile, name: str, values: NDArray[Any], level: int | None = None) -> None:
-    """Adds an array to an archive of NumPy, with a fixed date, so that its bytes do not depend on the
-    clock."""
+    """Adds an array to an archive of NumPy, with a fixed date: its bytes do not depend on the clock."""
     entry = io.BytesIO()
     np.lib.format.write_array(entry, values, version=(1, 0), allow_pickle=False)
     info = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
