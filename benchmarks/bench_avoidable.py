@@ -10,8 +10,8 @@ km/h less, 0 to 60 m ahead by 10, and comes sideways with 0.5 to 3.0 m/s by 0.5;
 would go backwards are left out. In each cell both programs say whether the two collide. The other's motion
 is that of the Joint Research Centre's program, which also lets the careful driver begin when the other
 reaches into its lane; the last column counts collisions if it begins as the regulation's text says, 0.4 s
-after the other has come 0.375 m out of the middle of its lane. All this is also done with the step and the
-contact of verdicts, 0.01 s and 20 mm; theirs stays at 0.1 s.
+after the other has come 0.375 m out of the middle of its lane. All this is also done with the step of
+verdicts, 0.01 s; theirs stays at 0.1 s.
 """
 
 import argparse
@@ -30,7 +30,6 @@ from roadgpt.road import World
 from roadgpt.run import Setup, perform
 from roadgpt.verdict.avoidable import FINE
 from roadgpt.verdict.careful import DRIVERS, Driver, Moment, drive_on
-from roadgpt.verdict.contact import CORNER
 
 STEP, LENGTH, WIDTH, BESIDE = 0.1, 4.3, 1.9, 3.5  # s, m; the other begins in the middle of the next lane
 WANDERS, EVALUATED = 0.375, 0.4  # m, s
@@ -64,12 +63,11 @@ def theirs(driver: Driver, cell: Cell, models: Any, movement: Any) -> tuple[bool
 
 def ours(driver: Driver, own: float, other: Any, as_text: bool = False, step: float = STEP) -> bool:
     """Whether our driver collides with the other, who moved so; ``as_text``: perceived as R157 says. Between
-    the other's steps it moves evenly; with the step of verdicts a contact counts from theirs on, too."""
+    the other's steps it moves evenly."""
     names = ("pos_profile_long", "pos_profile_lat", "speed_profile_long", "speed_profile_lat")
     profiles = [np.asarray(getattr(other, name), float) for name in names]
     fine = np.arange(0.0, len(profiles[0]) - 1 + 1e-9, step / STEP)
     along, aside, pace, drift = (np.interp(fine, np.arange(len(each)), each).tolist() for each in profiles)
-    touch = CORNER if step == FINE else 0.0
     wanders = next((i for i, t in enumerate(aside) if t <= BESIDE - WANDERS), len(aside))
 
     def seen(i: int, place: float, speed: float, gained: float) -> Moment:
@@ -81,7 +79,7 @@ def ours(driver: Driver, own: float, other: Any, as_text: bool = False, step: fl
 
     places, _ = drive_on(driver, seen, [own] * len(along), step, own * STEP)
     return any(
-        abs(t) < WIDTH + touch and abs(x - place) < LENGTH + touch
+        abs(t) < WIDTH and abs(x - place) < LENGTH
         for x, t, place in zip(along[:-1], aside[:-1], places[:-1], strict=True)
     )
 

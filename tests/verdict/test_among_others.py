@@ -62,7 +62,7 @@ def test_a_rear_end_collision_is_told_with_everything() -> None:
     assert verdict.description == (
         "hit van 1 after 47 m at 54 km/h: its front met the rear of van 1, at 18 km/h, with 36 km/h of "
         "difference and 54 % overlap; at fault; avoidable by any of four drivers: "
-        "careful driver avoids it, Reg157 collides, FSM avoids it, RSS avoids it"
+        "careful driver avoids it, Reg157 avoids it, FSM avoids it, RSS avoids it"
     )
     assert (verdict.at_s, verdict.at_xy, verdict.at_time) == (found.at_s, found.at_xy, found.at_time)
     assert verdict.sbft_description == "Car collided"

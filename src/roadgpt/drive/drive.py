@@ -48,7 +48,7 @@ COLUMNS = {
 TOLD = ("missed", "limited", "stopped")  # of others: tuples of texts
 RARE = ("handovers", "lights", *TOLD)  # of a header, only where they are not empty
 OTHERS = "others"
-"""Array of the others' states: whole numbers (samples, actors, 5); NaN, in older files GONE, of who is away."""
+"""Array of the states of others: whole numbers (samples, actors, 5); NaN, once GONE, of who is away."""
 PER_UNIT = np.array([1e3, 1e3, 1e3, 1e4, 1e3])  # of these numbers in a m, m, m, rad, m/s
 GONE = -(2**62)
 LARGEST, UNPACKED = 50_000_000, 200_000_000  # bytes of the file, and of its content: seven hours of driving

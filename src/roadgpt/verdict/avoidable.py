@@ -30,7 +30,7 @@ from roadgpt.network.lanes import lanes_of
 from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y
 from roadgpt.traffic.way import LEAST_GRIP, Way
 from roadgpt.verdict.careful import CAREFUL, DRIVERS, FULL, Driver, Moment, drive_on, stopping_distance
-from roadgpt.verdict.contact import CORNER, middles, separation
+from roadgpt.verdict.contact import middles, separation
 from roadgpt.verdict.incidents import OVER_BY, limits_at
 from roadgpt.verdict.measures import ACROSS, ALONG, Line, Measures, measure
 from roadgpt.verdict.verdict import PARTLY, Incident, percent
@@ -155,7 +155,7 @@ def _course(driver: Driver, meeting: "_Encounter") -> str:
     away = np.stack([ahead, meeting.t], axis=-1)
     apart = separation(away, np.zeros(len(ahead)), meeting.heading, meeting.half, meeting.halves).max(axis=-1)
     gap = (ahead - meeting.stretch - meeting.half[0])[(meeting.clearance < 0) & (ahead > 0)]
-    if (apart < CORNER).any():
+    if (apart < 0).any():
         return COLLIDES
     return f"stops {gap.min():.1f} m short" if len(gap) and not speeds[-1] else "avoids it"
 
