@@ -14,10 +14,10 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-from roadgpt.report.film import Film, Settings, write_film
 from roadgpt.road import Design, Segment, World
 from roadgpt.run import Run, prove
 from roadgpt.scene import Camera, Pose, Scene
+from roadgpt_film.film import Film, Settings, write_film
 
 SECONDS = float(sys.argv[1]) if sys.argv[1:] else 9.0
 SIZES = ((200, 66), (320, 160), (640, 360), (1280, 720))

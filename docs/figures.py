@@ -137,8 +137,8 @@ def fault(work: Path) -> Image.Image:
 
 def film(work: Path) -> Image.Image:
     """The same moment from behind and, small, from the hood camera."""
-    from roadgpt.report.film import Film, Settings
     from roadgpt.run import read_run
+    from roadgpt_film.film import Film, Settings
 
     run = read_run(made(work, "uphill") / UPHILL / "runs" / "0001")
     wide, high = SIZE

@@ -29,7 +29,6 @@ HEADINGS = {
     "Look": {
         "show": "Summarise a run, a folder of runs or a campaign.",
         "view": "View a road in 3-D with a replay of its drive, or draw pictures.",
-        "film": "Film drives: from behind the car, from its hood, or two side by side.",
         "compare": "Measure how similar two roads are, and draw both.",
         "scenarios": "List the scenarios of regulations and typologies, or show some whole.",
     },

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from itertools import count
 from math import ceil
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import click
 
@@ -61,6 +61,16 @@ def roads_named(
             if each.key not in seen:
                 seen.add(each.key)
                 yield each
+
+
+def kind_of(file: str) -> Literal["road", "runs", "campaign"]:
+    """Returns whether a name is of a single run or road file, of a folder of runs or of a campaign, or in
+    one."""
+    from roadgpt.campaign.folder_record import is_store
+    from roadgpt.campaign.selection import selection_of
+
+    place = selection_of(file)
+    return "road" if place is None else "campaign" if is_store(place.folder) else "runs"
 
 
 def use_each(

@@ -1,12 +1,11 @@
-"""Draws pictures of Runs and campaigns, and writes pages and films. Main function: ``draw``.
+"""Draws pictures of Runs and campaigns, and writes pages. Main function: ``draw``.
 
 birds_eye.png          the road from above, the driven path coloured by speed, the place of a failure
 height.png             distance against height
 curvature_grade.png    curvature, grade and speed along the road, with the limits of the rules
 overview.png           all roads of a campaign
 
-The packages ``view``, ``film`` and ``page`` make the page with a road in 3-D, films of drives, and reports on
-many roads."""
+The packages ``view`` and ``page`` make the page with a road in 3-D, and reports on many roads."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -19,7 +19,6 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from roadgpt.errors import RoadGPTError, UsageError, explained
-from roadgpt.report import film
 from roadgpt.report.birds_eye import THESIS
 from roadgpt.report.canvas import SOFT, add_axes, in_our_style, new_figure, save
 from roadgpt.report.height import THESIS_X, THESIS_Z, draw_heights
@@ -31,6 +30,7 @@ from roadgpt.report.view import page_of, scene
 from roadgpt.road import Road, World
 from roadgpt.run import Run, read_run
 from roadgpt.run.atomic import json_text, sweep, write_whole
+from roadgpt_film import film
 from roadgpt_study.survey.plan import PairPlan, RoadPlan, SurveyPlan, criteria_of
 from roadgpt_study.survey.store import ANSWERS
 from roadgpt_study.survey.survey import CARD, CRITERIA, MEDIA, OVERALL, Item, Medium, Survey

@@ -17,9 +17,9 @@ from scipy.interpolate import interp1d
 from road_parts import design_of, named
 from roadgpt.cli import app
 from roadgpt.errors import RoadGPTError, UsageError
-from roadgpt.report.film import HOLD, SEAM, TURN_LAG, Film, Settings, Trip, write, write_film
 from roadgpt.road import Design
 from roadgpt.run import Run, Setup, prove, write_run
+from roadgpt_film.film import HOLD, SEAM, TURN_LAG, Film, Settings, Trip, write, write_film
 
 SMALL = Settings(160, 96, 10)
 

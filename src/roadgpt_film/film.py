@@ -25,8 +25,7 @@ from roadgpt.errors import RoadGPTError, UsageError, explained, to_install
 from roadgpt.export.ego import CAR, calm_speed, goal_of, start_of
 from roadgpt.geometry.curve import Array
 from roadgpt.network import refuse_without_route
-from roadgpt.report.canvas import INK, LETTERS, OUTCOMES, POINTS, SEVERE, VERMILLION, fitted, outcome_of
-from roadgpt.road import Road, World
+from roadgpt.report import canvas
 from roadgpt.run import Run
 from roadgpt.run.atomic import whole_file
 from roadgpt.scene import Camera, Mount, Pose, Scene
@@ -66,7 +65,7 @@ class Trip:
         if run.road is None:
             raise UsageError(f"there is no road to film: {run.description}")
         if run.drive is None:
-            time, columns, s = _ride(run.road, run.world)
+            time, columns, s = _ride(run)
             margin = outside = None
         else:
             drive = run.drive
@@ -114,14 +113,16 @@ def _lagging(values: Array, share: float) -> Array:
     return np.asarray(lfilter([share], [1.0, share - 1.0], values, zi=[values[0] * (1 - share)])[0])
 
 
-def _ride(road: Road, world: World) -> tuple[Array, dict[str, Array], Array]:
-    speed = calm_speed(road, world)
+def _ride(run: Run) -> tuple[Array, dict[str, Array], Array]:
+    road = run.road
+    assert road is not None
+    speed = calm_speed(road, run.world)
     way = goal_of(road) - start_of(road)
     if way / speed > LONGEST:
         raise UsageError(f"a film of {way / speed / 60:.0f} minutes is too long; give a shorter road")
     time = np.arange(0.0, max(way / speed, 2 * STEP), STEP)
     s = np.minimum(start_of(road) + speed * time, road.length)
-    profile = world.profile_of(road)
+    profile = run.world.profile_of(road)
     place, heading, grade = road.at(s, profile.middle(s)), road.heading(s), road.grade(s)
     level = np.zeros_like(s)
     columns = {
@@ -220,7 +221,8 @@ class Pane:
 
     def _title(self, brush: ImageDraw.ImageDraw) -> None:
         u, size = self._scale, self._size(TITLE)
-        rows = fitted(self.run.title, (self.camera.width - 2 * EDGE * u) / POINTS, size, True, 2).split("\n")
+        wide = (self.camera.width - 2 * EDGE * u) / canvas.POINTS
+        rows = canvas.fitted(self.run.title, wide, size, True, 2).split("\n")
         brush.rectangle((0, 0, self.camera.width, (9 + LINE * len(rows)) * u), DIM)
         for k, row in enumerate(rows):
             brush.text((EDGE * u, LINE * (k + 1) * u), row, WHITE, _font(size, "bold"), "ls")
@@ -239,7 +241,7 @@ class Pane:
             return
         brush.text((right, y + 29 * u), f"{metres_per_second * 3.6:.0f}", WHITE, bold, "rs")
         brush.text((right + 6 * u, y + 29 * u), "km/h", PALE, text, "ls")
-        colour = SEVERE[severity(outside)] if margin > 0 else VERMILLION
+        colour = canvas.SEVERE[severity(outside)] if margin > 0 else canvas.VERMILLION
         said = f"margin {margin:.1f} m" if margin > 0 else "out of its lane"
         if outside > 0 and margin > 0:
             said += f", {percent(outside)} out"
@@ -249,21 +251,21 @@ class Pane:
             brush.rectangle((left, y + 67 * u, left + (wide - 16 * u) * part, y + 71 * u), shade)
 
     def _outcome(self, brush: ImageDraw.ImageDraw) -> None:
-        u, size, outcome = self._scale, self._size(TEXT), outcome_of(self.run)
+        u, size, outcome = self._scale, self._size(TEXT), canvas.outcome_of(self.run)
         room = min(self.camera.width - 2 * EDGE * u, 420 * u) - 28 * u
-        rows = fitted(self.run.description, room / POINTS, size, lines=3).split("\n")
+        rows = canvas.fitted(self.run.description, room / canvas.POINTS, size, lines=3).split("\n")
         text, bold = _font(size), _font(self._size(LARGE), "bold")
         if bold.getlength(outcome) > room:
             bold = _font(size, "bold")
-        colour = OUTCOMES.get(outcome, INK)
+        colour = canvas.OUTCOMES.get(outcome, canvas.INK)
         wide = max(bold.getlength(outcome), *map(text.getlength, rows)) + 28 * u
         middle, y = self.camera.width / 2, self.camera.height * 0.155
         left, right = middle - wide / 2, middle + wide / 2
         brush.rectangle((left, y, right, y + (52 + LINE * len(rows)) * u), WHITE)
         brush.rectangle((left, y, right, y + 38 * u), colour)
-        brush.text((middle, y + 29 * u), outcome, LETTERS.get(colour, WHITE), bold, "ms")
+        brush.text((middle, y + 29 * u), outcome, canvas.LETTERS.get(colour, WHITE), bold, "ms")
         for k, row in enumerate(rows):
-            brush.text((middle, y + (38 + 5 + LINE * (k + 0.75)) * u), row, INK, text, "ms")
+            brush.text((middle, y + (38 + 5 + LINE * (k + 0.75)) * u), row, canvas.INK, text, "ms")
 
 
 @dataclass(frozen=True, eq=False)
