@@ -37,7 +37,7 @@ def ours():
     for n in range(QUEUE):
         mover.enter(lane, 20.0 + n * SPACING, 0.0)
     rows = mover._rows
-    mover._numbers[rows, f.LENGTH : f.BRAKE + 1] = LENGTH, 1.8, 1.0, 50.0, 1.5, 1.5, 2.0
+    mover._numbers[rows, f.LENGTH : f.BRAKES + 1] = LENGTH, 1.8, 1.0, 50.0, 1.5, 1.5, 2.0
     passed, tick, before = [], 0, mover._numbers[rows, f.S].copy()
     while len(passed) < QUEUE:
         mover.move(tick * STEP, None, np.zeros((0, 7)))

@@ -100,7 +100,7 @@ def differences(roads: int, seed: int) -> str:
         differ += ours != theirs if theirs is not None else ours[0]
     return (
         f"{differ} differences ({judged:,} judged, {valid:,} valid; their code stops with an error at "
-        f"{stopped:,}, which count as a difference where ours passes them); slow {seconds[0]:.1f} s, "
+        f"{stopped:,}, each a difference if ours passes it); slow {seconds[0]:.1f} s, "
         f"fast {seconds[1]:.1f} s"
     )
 

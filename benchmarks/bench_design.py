@@ -66,7 +66,7 @@ def main(seed: int = 7) -> None:
     subprocess.run([sys.executable, "-c", WHOLE_PROCESS], check=True)
     after = getrusage(RUSAGE_CHILDREN)
     cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    print(f"a process that drafts {ROADS} roads, start included: {cpu:.2f} s processor (target 5 s)")
+    print(f"a process that drafts {ROADS} roads, start included: {cpu:.2f} s processor (target 5 s for 100)")
 
 
 def _campaign(words: str, truth: dict[str, Any], referee: ModuleType | None, seed: int) -> list[float]:

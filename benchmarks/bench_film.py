@@ -48,7 +48,7 @@ def rates(run: Run) -> None:
     steps = [int(k * (len(drive) - 1) / POSES) for k in range(POSES)]
     names = ("x", "y", "z", "heading", "pitch", "roll")
     poses = [Pose(*(float(drive[name][step]) for name in names)) for step in steps]
-    print("| picture | bonnet, no car: per CPU s | chase, with car: per CPU s |\n|---|---|---|")
+    print("| pictures per CPU s | from the bonnet, no car | from behind, with car |\n|---|---|---|")
     for size in SIZES:
         found = []
         for mount in ("bonnet", "chase"):

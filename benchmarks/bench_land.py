@@ -179,7 +179,7 @@ def timed(count: int = 40) -> None:
             start = time.perf_counter()
             Ground.of(made(Way(line, line), KINDS[number % 4], (), number, box), surface, cell=1.0)
             spent.append(time.perf_counter() - start)
-        print(f"ground of {size:g} m at 1 m: median {1000 * np.median(spent[1:]):.1f} ms of {count}")
+        print(f"ground of {size:g} m at 1 m: {1000 * np.median(spent[1:]):.1f} ms, median of {count}")
 
 
 def ways(folder: Path, size: float = 2000.0, each: int = 34, cell: float = 90.0) -> None:

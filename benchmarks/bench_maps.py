@@ -106,8 +106,10 @@ def main() -> None:
     if given.folder is None:
         print("no maps here: give their folder", file=sys.stderr)
         return
+    if not (paths := sorted(given.folder.rglob("*.xodr"))):
+        sys.exit(f"no map (.xodr) in {given.folder} or below it")
     lines, whole, same, maps, kept, driven = [], 0, 0, 0, 0, 0
-    for path in sorted(given.folder.rglob("*.xodr")):
+    for path in paths:
         begin = time.perf_counter()
         try:
             read = read_map(path)

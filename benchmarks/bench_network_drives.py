@@ -77,12 +77,12 @@ def drive_all(them: Sequence[tuple[Route, World]], driver: str, limit: float, fr
         if verdict.cause and "-v" in sys.argv:
             print(f"  {n}: {route}: {verdict.description}")
     kept = causes.pop("kept", 0)
-    least, usual_least = (min(rings), np.median(rings)) if rings else (np.nan, np.nan)
+    slowest = f"{min(rings):.1f} km/h (median {np.median(rings):.1f})" if rings else "-"
     print(
         f"{driver}, {limit:g} km/h, friction {friction:g}, oracle {ORACLE}: {kept} of {len(them)} kept "
         f"({100 * kept / len(them):.1f} %), fails: {dict(causes)}; routes with incidents: "
-        f"{dict(sorted(incidents.items()))}; least speed in {len(rings)} rings {least:.1f} km/h (median "
-        f"{usual_least:.1f}); {np.median(speeds):.0f} times real time per core",
+        f"{dict(sorted(incidents.items()))}; least speed in {len(rings)} rings {slowest}; "
+        f"{np.median(speeds):.0f} times real time per core",
         flush=True,
     )
 

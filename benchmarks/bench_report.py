@@ -86,7 +86,7 @@ def main(tests: int) -> None:
         rows, rows_cpu = clocked(all_rows)
     print("| tests | store, MB | report, s (processor) | every row read, s (processor) |")
     print("|---|---|---|---|")
-    print(f"| {tests:,} | {size:,.0f} | {report:.1f} ({cpu:.1f}) | {rows:.1f} ({rows_cpu:.1f}) |")
+    print(f"| {tests:,} | {size:,.1f} | {report:.1f} ({cpu:.1f}) | {rows:.1f} ({rows_cpu:.1f}) |")
 
 
 if __name__ == "__main__":

@@ -51,7 +51,7 @@ def _whole_command(words: str) -> None:
         after, took = getrusage(RUSAGE_CHILDREN), time.perf_counter() - begun
         cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
         size = sum(path.stat().st_size for path in Path(home).rglob("*") if path.is_file())
-    print(f"{ROADS} roads, not driven, not drawn: {cpu:.2f} s processor, {took:.2f} s clock (target 5 s);")
+    print(f"{ROADS} roads, not driven, not drawn: {cpu:.2f} s processor (target 5 s for 100), {took:.2f} s clock;")
     print(f"    {size / ROADS / 1000:.1f} kB per road on disk; '{words}'")
 
 

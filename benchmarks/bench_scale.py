@@ -1,12 +1,14 @@
 """What a campaign costs beside its tests, and how it grows.
 
-    python benchmarks/bench_scale.py            # all; or: overhead [TESTS] workers leaks memory million
+    python benchmarks/bench_scale.py [PART ...] [TESTS]
 
-overhead   a test that does nothing: through the store and two workers, against the bare function
-workers    tests that are drafted, driven and judged: two workers against one, and bytes on the disk
+overhead   8,000 tests that do nothing: through the store and two workers, against the bare function
+workers    96 tests that are drafted, driven and judged: two workers against one, and bytes on the disk
 leaks      800 such tests: memory of the workers that drive
 memory     20,000 tests that cost nothing, with drives to be kept: memory of the process that writes
 million    a store of 1,000,000 synthetic tests: status, what a report asks for, the table of results
+
+Without a PART all are measured; TESTS takes the place of each of these numbers.
 """
 
 import json
@@ -43,7 +45,7 @@ SEGMENT = Segment(
 DESIGN = Design(starting_point=(31.5, 40.25, 3.0), theta=17.5, segments=(SEGMENT,) * 7)
 FEATURES = {name: 1.234567 * number for number, name in enumerate("ABCDEFGHIJKLMNOPQR", 1)}
 STEPS_OF_A_DRIVE = 1000
-TESTS = int(next(filter(str.isdigit, sys.argv[1:]), 8000))  # that do nothing
+TESTS = next(filter(str.isdigit, sys.argv[1:]), "")
 ENDS = {True: ("PASS", None), False: ("FAIL", "stuck")}
 
 
@@ -114,7 +116,7 @@ def of_no_cost(tests: int, function: Callable[..., FinishedTest]) -> tuple[Plan,
 
 def overhead() -> None:
     """A test that does nothing, with everything around it."""
-    tests = TESTS
+    tests = int(TESTS or 8000)
     plan, ready = of_no_cost(tests, instant)
     ready()
     cell = plan.cells({})[0]
@@ -128,9 +130,9 @@ def overhead() -> None:
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name) / "c"
             begin(plan, folder)
-            cpu, began, at = 0.0, 0.0, 0
+            cpu, began, at = time.process_time(), time.perf_counter(), 0
             for progress in work(folder, workers):
-                if progress.total() and not at:  # workers have started
+                if 0 < progress.total() < tests and not at:  # workers have started
                     cpu, began, at = time.process_time(), time.perf_counter(), progress.total()
             spent, busy = (time.perf_counter() - began), time.process_time() - cpu
         each = spent / (tests - at)
@@ -142,7 +144,7 @@ def overhead() -> None:
 
 def workers() -> None:
     """Real tests with one worker and with two; what the process that writes has to do for each."""
-    tests = 96
+    tests = int(TESTS or 96)
     rates = []
     print("\n| workers | tests | tests/s | times | main process, CPU per test | bytes per test on the disk |")
     print("|---|---|---|---|---|---|")
@@ -159,7 +161,7 @@ def workers() -> None:
                 ended = sorted(when for (when,) in record.query("SELECT ended FROM tests"))
             files = [path for path in folder.rglob("*") if path.suffix in (".sqlite", ".npz")]
             size = sum(path.stat().st_size for path in files) / tests
-            first = next(at for at, when in enumerate(ended) if when > ended[0] + 2.0)
+            first = next((at for at, when in enumerate(ended) if when > ended[0] + 2.0), 1)
             rates.append((len(ended) - first) / (ended[-1] - ended[first - 1]))
             times = rates[-1] / rates[0]
             print(
@@ -194,7 +196,7 @@ def curve(steps: Iterator[Any], tests: int, points: int = 8) -> None:
 
 def leaks() -> None:
     """Many real tests, one after another: do workers grow?"""
-    real = 800
+    real = int(TESTS or 800)
     print("\nReal tests: drafted, driven, judged.\n")
     with tempfile.TemporaryDirectory() as name:
         begin(
@@ -205,7 +207,7 @@ def leaks() -> None:
 
 def memory() -> None:
     """Very many tests with drives: does the process that writes grow?"""
-    tests = 20_000
+    tests = int(TESTS or 20_000)
     plan, ready = of_no_cost(tests, with_drive)
     ready()
     print("\nTests that cost nothing, with drives of 20 s.\n")
@@ -216,7 +218,7 @@ def memory() -> None:
 
 def million() -> None:
     """A store of a million tests, written as fast as SQLite takes them, and asked."""
-    tests = 1_000_000
+    tests = int(TESTS or 1_000_000)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         plan = Plan(prompts=(ROAD,), reader="plan", budget=CellBudget(tests=tests // 4), seeds=(0, 1, 2, 3))
@@ -285,7 +287,6 @@ def _fill(folder: Path, tests: int) -> None:
             "INSERT INTO batches VALUES (?, ?, ?, 16, 0)",
             ((name, at, 16 * at + 1) for at in range(per_cell // 16)),
         )
-    db.executemany("INSERT INTO features VALUES (?)", [(name,) for name in FEATURES])
     db.execute("COMMIT")
     db.close()
 
@@ -302,7 +303,7 @@ def main() -> None:
         PARTS[names[0]]()
         return
     for name in names:
-        subprocess.run([sys.executable, __file__, name], check=True)
+        subprocess.run([sys.executable, __file__, name, *filter(None, [TESTS])], check=True)
 
 
 if __name__ == "__main__":
