@@ -51,8 +51,8 @@ def _whole_command(words: str) -> None:
         after, took = getrusage(RUSAGE_CHILDREN), time.perf_counter() - begun
         cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
         size = sum(path.stat().st_size for path in Path(home).rglob("*") if path.is_file())
-    print(f"{ROADS} roads, not driven, not drawn: {cpu:.2f} s processor (target 5 s for 100), {took:.2f} s clock;")
-    print(f"    {size / ROADS / 1000:.1f} kB per road on disk; '{words}'")
+    print(f"{ROADS} roads, not driven, not drawn: {cpu:.2f} s processor (target 5 s for 100);")
+    print(f"    {took:.2f} s clock, {size / ROADS / 1000:.1f} kB per road on disk; '{words}'")
 
 
 def _words_to_road() -> None:
