@@ -2,7 +2,7 @@
 
     python benchmarks/bench_edit.py [ROADS]
 
-The first figures are of the requests with truths in tests/design/edits.jsonl, read from their words. Then
+The first figures are of the requests with truths in tests/edit/edits.jsonl, read from their words. Then
 every one of the usual changes below, given as plans, is made of ROADS (default 40) random roads: changed, so
 already, refused, or changed with the help of a repair of the rest of the road.
 """
@@ -18,9 +18,9 @@ from edit_truth import changed_besides, misses, ours, requests, roads
 from roadgpt.brief import read
 from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.design import draft
-from roadgpt.design.edit import edit
 from roadgpt.errors import EditError
 from roadgpt.road import Design, World
+from roadgpt_edit.editing import edit
 
 PLANS = (
     "turn x4",

@@ -16,12 +16,12 @@ from scipy import ndimage
 from roadgpt import Brief, build, draft, read
 from roadgpt.brief.land_words import land_in
 from roadgpt.brief.scene import Scene
-from roadgpt.design.edit import edit
 from roadgpt.design.room import world_for
 from roadgpt.errors import RoadGPTError
 from roadgpt.ground.ground import Ground
 from roadgpt.network.landscape import crossings, ground_around
 from roadgpt.road import Road, World
+from roadgpt_edit.editing import edit
 
 COUNT = int(next(filter(str.isdigit, sys.argv[1:]), 60))
 SPREADS = {"flat": (0, 10), "rolling": (4, 28), "hilly": (10, 80), "mountain": (30, 999)}

@@ -14,7 +14,7 @@ from typing import Any
 from roadgpt.check.measures import Measures, measure
 from roadgpt.road import Design, build, read_design
 
-HERE = Path(__file__).parent / "design"
+HERE = Path(__file__).parent / "edit"
 Described = dict[str, Any]
 
 

@@ -18,8 +18,16 @@ from roadgpt import plugins
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "src" / "roadgpt"
-ANNEXES = ("roadgpt_beamng", "roadgpt_film", "roadgpt_gym", "roadgpt_sbft", "roadgpt_search", "roadgpt_study")
-FEW = {"roadgpt_film": 25}  # names of roadgpt that an annex may import
+ANNEXES = (
+    "roadgpt_beamng",
+    "roadgpt_edit",
+    "roadgpt_film",
+    "roadgpt_gym",
+    "roadgpt_sbft",
+    "roadgpt_search",
+    "roadgpt_study",
+)
+FEW = {"roadgpt_edit": 107, "roadgpt_film": 25}  # names of roadgpt that an annex may import
 HALLWAY = {"compiled", "errors", "plugins", "plural", "provenance", "reading", "children", "stopping"}
 TELLING = (
     "import atexit, sys; from roadgpt.cli import main; "

@@ -23,9 +23,9 @@ from roadgpt.brief.scene import (
     What,
     Where,
 )
-from roadgpt.design.edit import edit
 from roadgpt.errors import EditError, IdleEditError
 from roadgpt.road import World
+from roadgpt_edit.editing import edit
 from scenes_drawn import LANDS, actions, roles
 
 FIGURES = st.integers(1, 4000).map(lambda n: n / 20)

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
+from roadgpt import plugins
 from roadgpt.brief import AnotherRoadError, Brief
 from roadgpt.brief.plan import read_plan
 from roadgpt.campaign import single_test
@@ -119,3 +120,20 @@ def test_roads_that_were_made_can_be_changed_one_after_another() -> None:
     (sharper,) = [name for name in changed if "sharper" in name]
     card = json.loads(Path("roadgpt-runs", gentler, "runs", "0001", "edit.json").read_text())
     assert sharper in card["of"]  # the second change is one of the changed road
+
+
+def test_a_change_heeds_the_settings_as_the_roads_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROADGPT_FORMAT", "svg")
+    result = say("a flat road with 3 turns", "1", "make the last turn sharper", "exit")
+    assert "changed road: " in result.stdout
+    assert [*Path("roadgpt-runs").glob("make-*/runs/0001/height.svg")]
+    assert not [*Path("roadgpt-runs").glob("make-*/runs/0001/*.png")]
+
+
+def test_without_the_package_that_edits_nobody_is_asked_for_a_change(monkeypatch: pytest.MonkeyPatch) -> None:
+    known = plugins.names
+    monkeypatch.setattr(plugins, "names", lambda kind: [name for name in known(kind) if name != "edit"])
+    result = say("a flat road with 3 turns", "1", "exit")
+    assert result.exit_code == 0
+    assert "1 of 1 roads" in result.stdout
+    assert "change it?" not in result.stdout

@@ -12,10 +12,10 @@ from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.plan import PlanReader
 from roadgpt.brief.sentence import sentence
-from roadgpt.design.edit import edit
 from roadgpt.errors import BriefError, RoadGPTError
 from roadgpt.export import save
 from roadgpt.road import World
+from roadgpt_edit.editing import edit
 from tables import rows
 
 LEAST = 0.25  # m above both ends of the turn: 10 m at 3 %, and a little for rounding

@@ -29,7 +29,7 @@ JUDGED = [
     *(DATA / "descriptions" / "contrasts_validation").glob("*.jsonl"),
     *(DATA / "descriptions" / "free_validation").glob("*.jsonl"),
     *(DATA / "changes" / "validation").glob("*.jsonl"),
-    DATA.parents[1] / "tests" / "design" / "edits.jsonl",
+    DATA.parents[1] / "tests" / "edit" / "edits.jsonl",
 ]
 
 

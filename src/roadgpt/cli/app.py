@@ -23,7 +23,6 @@ HEADINGS = {
     "Make": {
         "run": "Make roads from a description: design, check, drive and judge them.",
         "read": "Show how RoadGPT interprets a description, and how confident it is.",
-        "edit": "Change a road with a request in plain words.",
         "drive": "Drive roads from files, or repeat tests of a campaign.",
     },
     "Look": {

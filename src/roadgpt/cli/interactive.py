@@ -8,14 +8,13 @@ from contextlib import suppress
 import click
 
 from roadgpt import brief as reading
-from roadgpt import stopping
+from roadgpt import plugins, stopping
 from roadgpt.brief.plan import read_plan
 from roadgpt.cli.commands import make
 from roadgpt.cli.options import HOW_MANY
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import warn
 from roadgpt.errors import RoadGPTError
-from roadgpt.road import World
 
 USUAL_ROADS = 3
 ENOUGH = {"exit", "quit", "bye", "q"}
@@ -107,12 +106,16 @@ def _how_many() -> int:
 
 
 def _change(roads: list[str]) -> None:
+    if "edit" not in plugins.names("commands"):
+        return  # the package that brings it is not installed
+    edit: click.Command = plugins.find("commands", "edit")
     question = "change it? > " if len(roads) == 1 else "change one? (2: make the last turn sharper) > "
     while roads and (answer := _asked(question, CHANGES)):
         match = re.match(r"(?:road\s+)?(\d+)\s*[:,]?\s+(.*)", answer, re.IGNORECASE | re.DOTALL)
         is_numbered = match is not None and 1 <= int(match[1]) <= len(roads)
         number, words = (int(match[1]) - 1, match[2]) if match and is_numbered else (0, answer)
         try:
-            roads[number] = str(make.edit_road(Screen(1), roads[number], words, World()))
+            context = edit.make_context("edit", ["--", roads[number], words])
+            roads[number] = str(edit.invoke(context))
         except RoadGPTError as error:
             warn(error)

@@ -4,7 +4,7 @@ what is not measured as required.
 The parabola that joins the grades of two straights takes up a part of both. A level straight next to a steep
 one is therefore measured shorter than designed, and the mean grade of the steep one falls. So
 ``corrected_draft`` corrects joints and grades of straights by the measured errors, and measures the draft
-again. ``design.fit`` corrects only inclines. Here the lengths of consecutive straights change, too,
+again. The lengths of consecutive straights change, too,
 which moves the joints between them but not the road in plan view."""
 
 from collections.abc import Iterator, Sequence

@@ -5,7 +5,6 @@ m; points are off by a few centimetres at most. The road that is built from the 
 every rule checks it again."""
 
 from collections.abc import Sequence
-from math import cos, radians, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -13,10 +12,9 @@ import scipy
 
 from roadgpt.brief.element import Element
 from roadgpt.brief.map_fit import EDGE
-from roadgpt.check.ribbon import sides
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.nearness import Complex, meeting
-from roadgpt.road import Design, Road, World, build
+from roadgpt.road import World
 
 STEP = 1.0  # m between points of the walked line
 COARSE = 3  # points of the walked line from one point of the test for overlap to the next
@@ -28,11 +26,6 @@ DIAGONALS = np.array([45.0, 135.0, 225.0, 315.0])  # degrees: headings at which 
 HEADINGS = 72  # number of headings that are tried if the first one does not fit on the map
 TENTHS_OFF = 150  # of a degree by which a start may miss the heading that is required
 MOST_POINTS = 700  # of a line with twice as many or more, only the convex hull is looked at
-LEAST_EDGE = 0.1  # m between ribbon and border of a moved road, for rounding and the bulge between samples
-BEYOND = 1.05  # m by which SBFT's spline may run on behind either end
-CENTIMETRE, HUNDREDTH = 100.0, 100.0  # per metre, per degree: starts are rounded to these units
-TURNS = np.array(sorted(range(-4500, 4501), key=abs)) / HUNDREDTH  # degrees, the smallest first
-PORTIONS = 60  # parts into which these turns are divided, tried one after another
 STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest place of a draft
 
 
@@ -181,49 +174,3 @@ def smallest_box(line: PlanLine) -> float:
     """Returns the side in metres of the smallest square around the line, over headings 5 degrees apart."""
     _, _, width, height = boxes(outermost(line.z), np.arange(0.0, 90.0, 5.0))
     return float(np.maximum(width, height).min())
-
-
-def moved_onto_map(design: Design, world: World) -> Design | None:
-    """Returns the design moved onto the map; None if its road is too large. The road is moved no further than
-    necessary. If moving is not enough, the road is also rotated about its middle by the smallest angle, up to
-    45 degrees, at which it fits; its ``theta`` is then a multiple of 0.01 degrees."""
-    corners = _corners(world.lay(build(design)), world)
-    room = world.site.map_size - 2 * LEAST_EDGE
-    written = round(design.theta * HUNDREDTH) / HUNDREDTH - design.theta
-    turn = _least_turn(corners, np.append(0.0, TURNS + written), room)
-    if turn is None:
-        return None
-    x, y, z = design.starting_point
-    left, low, width, height = (float(edge[0]) for edge in boxes(corners, np.zeros(1)))
-    pivot, spin = complex(left + width / 2, low + height / 2), np.exp(1j * radians(turn))
-    start, turned = ((p - pivot) * spin + pivot for p in (complex(x, y), corners))
-    most = world.site.map_size - LEAST_EDGE
-    edges = ((each.min(), each.max()) for each in (turned.real, turned.imag))
-    dx, dy = (float(np.clip(0.0, LEAST_EDGE - least, most - largest)) for least, largest in edges)
-    if turn or dx or dy:
-        x, y = (round(v * CENTIMETRE) / CENTIMETRE for v in (start.real + dx, start.imag + dy))
-    theta = round((design.theta + turn) * HUNDREDTH) / HUNDREDTH if turn else design.theta
-    return design.model_copy(update={"starting_point": (float(x), float(y), z), "theta": theta % 360})
-
-
-def _corners(road: Road, world: World) -> Complex:
-    half = world.section.road_width / 2
-    left, right = sides(road.sample(), world.profile_of(road).edges(road.sample().s))
-    behind = []
-    for end, more in ((0.0, -BEYOND), (road.length, BEYOND)):  # continued straight
-        heading = float(road.heading(end))
-        ahead = more * np.array([cos(heading), sin(heading)])
-        behind += [road.at(end, t)[:2] + ahead for t in (-half, half)]
-    points = np.concatenate([left, right, behind])
-    x, y = points[scipy.spatial.ConvexHull(points).vertices].T
-    return np.asarray(x + 1j * y)
-
-
-def _least_turn(corners: Complex, turns: Array, room: float) -> float | None:
-    if np.abs(corners[:, None] - corners).max() > np.sqrt(2) * room:
-        return None
-    for some in np.array_split(turns, PORTIONS):
-        found = first_that_fits(corners, some, room)
-        if found:
-            return found[0]
-    return None

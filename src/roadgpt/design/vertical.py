@@ -192,24 +192,6 @@ def joined(
     return tuple(out)
 
 
-def with_new_parabolas(
-    segments: tuple[Segment, ...], before: Sequence[Segment], pace: Pace, ease: float, is_widened: bool
-) -> tuple[Segment, ...]:
-    """Returns segments with new parabolas wherever two grades meet that did not meet ``before`` a change. If
-    ``is_widened``, unchanged segments get parabolas as well, and all radii that are smaller than the rule
-    allows are increased."""
-    known = {(a.incline, b.incline, b.vertical_radius) for a, b in pairwise(before)}
-    opened = frozenset(
-        i
-        for i, (a, b) in enumerate(pairwise(segments), 1)
-        if a.incline != b.incline
-        and (a.incline, b.incline, b.vertical_radius) not in known
-        and (is_widened or b not in before)
-    )
-    segments = joined(segments, pace, ease, opened) if opened else segments
-    return widened(segments, pace) if is_widened else segments
-
-
 def widened(segments: Sequence[Segment], pace: Pace) -> tuple[Segment, ...]:
     """Returns the segments; each vertical radius that is smaller than the rule allows is increased. If
     neighbouring parabolas leave no room, their radii are chosen anew as well."""

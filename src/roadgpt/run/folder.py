@@ -68,6 +68,12 @@ def new_folder(words: str, seed: int, home: Path = HOME) -> Path:
                 return folder
 
 
+def reject_used(out: Path | None) -> None:
+    """Raises UsageError if ``out`` is a folder that is not empty."""
+    if out is not None and out.is_dir() and any(out.iterdir()):
+        raise UsageError(f"{out} is not empty; name another folder")
+
+
 CARD = "campaign.json"
 
 

@@ -1,8 +1,8 @@
 """Reads a change request, such as "make the second turn wider", and returns it as an EditRequest.
 
 ``read_request`` reads words with RoadGPT's neural network, or with a language model (``chatting``);
-``plan.read_change_plan`` reads plans.
-``design.edit`` finds the turns and straights of the road to which a request refers."""
+``plan.read_change_plan`` reads plans. To which turns and straights of a road a request refers is found by
+who changes the road."""
 
 import re
 from collections.abc import Iterator

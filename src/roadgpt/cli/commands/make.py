@@ -1,4 +1,4 @@
-"""Commands that make or drive roads: ``roadgpt run``, ``read``, ``edit`` and ``drive``."""
+"""Commands that make or drive roads: ``roadgpt run``, ``read`` and ``drive``."""
 
 import json
 import secrets
@@ -15,11 +15,11 @@ from roadgpt.brief import SURE, Brief, normal, remarks, sentence
 from roadgpt.brief.plan import plan, read_plan, with_route
 from roadgpt.brief.scene import scene_text
 from roadgpt.brief.sentence import clause_columns, road_words
-from roadgpt.chat import ChatSettings, Meter, counting
+from roadgpt.chat import Meter
 from roadgpt.chat.answer import plain
 from roadgpt.cli import options
 from roadgpt.cli.options import HOW_MANY, Argument, GroupedCommand, Heading, Option, folder, named, whole
-from roadgpt.cli.roads import UNREADABLE, each_road, made, refuse_file, roads_in, roads_named
+from roadgpt.cli.roads import UNREADABLE, each_road, made, refuse_file, roads_in
 from roadgpt.cli.screen import Row, Screen, row_of
 from roadgpt.cli.streams import aligned, crashes_go_to, warn
 from roadgpt.errors import GivenUpError, UsageError
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from roadgpt.campaign import Campaign
     from roadgpt.campaign.gate import Gate
     from roadgpt.campaign.selection import Choice, Selection
-    from roadgpt.design.edit import Edited, EditRequest
     from roadgpt.report import Format, Scale
     from roadgpt.road import Design, Road, World
     from roadgpt.run.folder import Draw
@@ -298,116 +297,6 @@ def _table(brief: Brief) -> str:
     return "\n".join(aligned(rows, "><<"))
 
 
-EDIT_OPTIONS = (
-    Argument("run", "RUN", "Name the folder of a run, or the file of a design."),
-    Argument("words...", "CHANGE", 'Say what to change, such as "make the second turn sharper".'),
-    options.out("Folder for the changed road. [default: a new one]"),
-    Option("--plan is_plan", "CHANGE is a plan, such as 'turn 2: radius x0.75'.", bool),
-    Option("--reader", "What reads CHANGE: model (neural networks) or chat (a language model).",
-           click.Choice(["model", "chat"]), "model"),
-    *options.CHAT,
-    *named(options.WORLD, "map_size"),
-    *(options.DRIVER_AGAIN, options.NO_DRIVE, options.NO_PLOT, options.FORMAT),
-    *(options.json_option("Print one JSON line.", heading=Heading.OUTPUT), options.QUIET),
-)  # fmt: skip
-
-
-@click.command(cls=GroupedCommand, params=[*EDIT_OPTIONS])
-def edit(run: str, words: tuple[str, ...], as_json: bool, quiet: bool, **rest: Any) -> None:
-    """Change a road with a request in plain words.
-
-    RUN is a run, a folder that holds one run, or a file with a RoadGPT design. The changed road is written
-    into a new folder. Everything that the request does not refer to stays the same. World, driver and rules
-    are those of the run, but a map of the usual 250 m grows if the changed road needs it; --map-size applies
-    only to a design from a file.
-
-    \b
-    roadgpt edit my-roads/runs/0001 "make the second turn sharper and the end downhill"
-    roadgpt edit design.json "add a hairpin after the first turn, then remove the last straight"
-    roadgpt edit design.json --plan "turn 2: radius x0.75; end: slope down"
-
-    The exit status is 2 if the words cannot be read, refer to something that is not on the road, or ask for
-    a road that cannot be valid. In these cases nothing is written."""
-    chat, pictures = options.chat_of(rest, rest["reader"]), options.pictures_of(rest)
-    given = {"chat": chat, "pictures": pictures, "drives": not rest.pop("no_drive")}
-    edit_road(Screen(1, as_json, quiet), run, " ".join(words), options.world_of(rest), **given, **rest)
-
-
-def edit_road(
-    screen: Screen, road: str, words: str, world: "World", out: Path | None = None, reader: str = "model",
-    chat: ChatSettings | None = None, driver: tuple[str, ...] = (), drives: bool = True,
-    pictures: "tuple[Format, ...]" = ("png",), is_plan: bool = False,
-) -> Path:  # fmt: skip
-    """Changes a road as requested, checks and drives it, writes and prints its run, and returns its folder.
-
-    ``road`` is a run, a test of a campaign, or a file with a design; ``world`` is used only for a file.
-    ``driver`` comes from ``--driver``. Nothing is driven if ``drives`` is False or the run was not driven."""
-    from roadgpt.brief.change.plan import read_change_plan
-    from roadgpt.design.edit import edit
-    from roadgpt.drive.loading import check_named_drivers, require_permission
-    from roadgpt.run import prove
-    from roadgpt.run.editing import original_of, reject_used, write_edit
-    from roadgpt.run.execution import test_name
-    from roadgpt.run.folder import new_folder
-
-    reject_used(out)
-    (named,) = roads_named([road], None)
-    before, design, remarks = original_of(road, named.run() if named.run else None, world)
-    for remark in remarks:
-        screen.say(f"{road}: {remark}")
-    setup = before.request.setup
-    check_named_drivers(driver, {setup.driver}, road)
-    drives = drives and setup.drives
-    if drives:
-        require_permission(setup.driver)
-    request: str | EditRequest = words
-    if is_plan:
-        if chat is not None:
-            raise UsageError(f"--plan needs no language model; leave out --reader {reader}")
-        request = read_change_plan(words)
-    meter = Meter.of(chat)
-    try:
-        with counting(meter, "edit"):
-            edited = edit(design, request, before.world, setup.geometry, chat)
-    finally:  # a language model costs money even if the change failed
-        screen.spent(meter.spent)
-    setup = setup.model_copy(update={"designer": "planner", "reader": reader, "chat": chat, "drives": drives})
-    old = prove(design, before.seed, before.world, setup.model_copy(update={"drives": False}))
-    if setup.scenario and edited.world.scene != before.world.scene:
-        screen.say(f"the scene is no longer that of {setup.scenario}")
-        setup = setup.model_copy(update={"scenario": ""})
-    with redirect_stdout(sys.stderr):  # a user's driver may print
-        run = prove(edited.design, before.seed, edited.world, setup)
-    folder = made(out) if out is not None else new_folder(words, before.seed)
-    place = write_edit(run, old, words, edited.changes, road, folder, options.drawing_of(pictures))
-    row = row_of(run, str(folder / test_name(1)), name=test_name(1))
-    if screen.as_json:
-        told = {"request": words, "of": road, "changes": edited.changes, "unused": edited.unused}
-        sure = {"confidence": edited.confidence, "is_sure": edited.confidence >= SURE, "other": edited.other}
-        print(json.dumps({**told, **sure, **json.loads(row.to_json())}, ensure_ascii=False))
-    else:
-        _print_edit(screen, edited, row, place, pictures)
-    return place
-
-
-def _print_edit(
-    screen: Screen, made: "Edited", row: Row, place: Path, pictures: "tuple[Format, ...]"
-) -> None:
-    for change in made.changes:
-        screen.say(change)
-    if made.confidence < SURE:
-        screen.say(UNSURE.format(100 * made.confidence))
-        if made.other:
-            screen.say(f'it could also mean: --plan "{made.other}"')
-    if made.unused:
-        screen.say("not understood: " + ", ".join(f"'{word}'" for word in made.unused))
-    with screen:
-        screen.row(row)
-    screen.say(f"changed road: {place}")
-    for kind in pictures[:1]:
-        screen.say(f"pictures: {place}/*.{kind}, and of the road as it was: {place}/before/*.{kind}")
-
-
 OF_AGAIN = (*options.CHOICES, options.NO_PLOT, options.AXES, options.FORMAT)
 DRIVE_OPTIONS = (
     options.seed("Seed for the driver.", 1),
@@ -464,7 +353,7 @@ def drive(
         return 0
     from roadgpt.cli.junit import suite_of, write_junit
     from roadgpt.run import Request, Setup, check_parts, prove, write_run
-    from roadgpt.run.editing import reject_used
+    from roadgpt.run.folder import reject_used
     from roadgpt.run.model import MOST, given_up
 
     reject_used(out)

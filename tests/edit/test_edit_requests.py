@@ -16,9 +16,9 @@ from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.words import SURE
 from roadgpt.design import draft
-from roadgpt.design.edit import Edited, edit
 from roadgpt.errors import EditError, UnclearPlaceError
 from roadgpt.road import Design, World, build
+from roadgpt_edit.editing import Edited, edit
 
 REFEREE = Path(__file__).resolve().parents[3] / "shared" / "referee.py"
 HONOURED, LEFT_ALONE = 0.95, 0.99

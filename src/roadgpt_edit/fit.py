@@ -50,27 +50,10 @@ from roadgpt.check.matching import complaints, fits, turn_complaints
 from roadgpt.check.measures import LEAST_TURN, LEVEL, MeasuredFeature, Measures, measure, way
 from roadgpt.check.rules.below_floor import ROUNDING
 from roadgpt.check.rules.too_abrupt import abrupt_place
+from roadgpt.design import vertical
 from roadgpt.design.compose import Windows
 from roadgpt.design.elements import ABOVE_GROUND
-from roadgpt.design.layout import moved_onto_map, neighbours
-from roadgpt.design.road_elements import (
-    RoadElement,
-    RoadElements,
-    features_of,
-    shows_slopes,
-    shows_turns,
-    with_inclines,
-    with_segments,
-)
-from roadgpt.design.vertical import (
-    EASES,
-    SHORTEST_SLOPE,
-    Pace,
-    made_to_fit,
-    too_abrupt,
-    widened,
-    with_new_parabolas,
-)
+from roadgpt.design.layout import neighbours
 from roadgpt.errors import DesignError
 from roadgpt.geometry import PieceCurve
 from roadgpt.geometry.curve import Array
@@ -79,6 +62,16 @@ from roadgpt.geometry.pieces import joined
 from roadgpt.road import Design, Geometry, Road, Segment, World, build
 from roadgpt.road.builder import elevation_of, pieces_of
 from roadgpt.road.design import MAX_TURN
+from roadgpt_edit.onto_map import moved_onto_map
+from roadgpt_edit.road_elements import (
+    RoadElement,
+    RoadElements,
+    features_of,
+    shows_slopes,
+    shows_turns,
+    with_inclines,
+    with_segments,
+)
 
 
 class Requirements(NamedTuple):
@@ -152,7 +145,9 @@ class Look:
 FREE = Outline(groups=(), turns=Range())  # nothing is required of the whole road
 ROUNDS = 24  # of changing inclines
 ROOMIER = (1.0, 1.5, 2.5)  # factors on the room for parabolas of a proposal
-PARABOLAS = tuple((ease, is_widened) for is_widened in (False, True) for ease in EASES)  # of an edited road
+PARABOLAS = tuple(
+    (ease, is_widened) for is_widened in (False, True) for ease in vertical.EASES
+)  # of an edited road
 CLEAR = 0.1  # percentage points off the edge of up, down and level
 INSIDE = 0.2  # percentage points off the edge of a required grade, or a third of its width
 SURPLUS = 0.05  # percentage points more than is missing, for rounding
@@ -207,22 +202,22 @@ def graded(design: Design, elements: RoadElements, world: World, before: Design 
     slopes = _slopes_of_edit(elements, limit) if before else _slopes_of_proposal(elements, world, limit)
     lengths, inclines = [s.distance for s in design.segments], [s.incline for s in design.segments]
     start = slopes.within_bounds(np.array(inclines))
-    road, pace = build(design), Pace.of(design, world)
+    road, pace = build(design), vertical.Pace.of(design, world)
     points, stations = road.centreline(), road.sample().s
-    short = {i for e in elements if not e.is_turn and e.length < SHORTEST_SLOPE for i in e.members}
+    short = {i for e in elements if not e.is_turn and e.length < vertical.SHORTEST_SLOPE for i in e.members}
     kept: Design | None = None
     for attempt in range(len(PARABOLAS if before else ROOMIER)):
         grades = start
         for _ in range(ROUNDS):
             segments = with_inclines(design.segments, grades)
             if before:
-                segments = with_new_parabolas(segments, before.segments, pace, *PARABOLAS[attempt])
+                segments = _with_new_parabolas(segments, before.segments, pace, *PARABOLAS[attempt])
             else:
-                segments = widened(segments, pace)
-                if too_abrupt(segments, pace):
+                segments = vertical.widened(segments, pace)
+                if vertical.too_abrupt(segments, pace):
                     room = ROOMIER[attempt]
-                    grades = made_to_fit(grades, lengths, inclines, short, slopes.bounds, pace, room)
-                    segments = widened(with_inclines(design.segments, grades), pace)
+                    grades = vertical.made_to_fit(grades, lengths, inclines, short, slopes.bounds, pace, room)
+                    segments = vertical.widened(with_inclines(design.segments, grades), pace)
             points[:, 2] = elevation_of(segments, 0.0).height(stations)
             missing = slopes.missing(measure(points))
             moved = slopes.moved(grades, missing)
@@ -235,6 +230,28 @@ def graded(design: Design, elements: RoadElements, world: World, before: Design 
         kept = tried if kept is None or not missing.any() else kept
     assert kept is not None
     return kept
+
+
+def _with_new_parabolas(
+    segments: tuple[Segment, ...],
+    before: Sequence[Segment],
+    pace: vertical.Pace,
+    ease: float,
+    is_widened: bool,
+) -> tuple[Segment, ...]:
+    """Returns segments with new parabolas wherever two grades meet that did not meet ``before`` a change. If
+    ``is_widened``, unchanged segments get parabolas as well, and all radii that are smaller than the rule
+    allows are increased."""
+    known = {(a.incline, b.incline, b.vertical_radius) for a, b in pairwise(before)}
+    opened = frozenset(
+        i
+        for i, (a, b) in enumerate(pairwise(segments), 1)
+        if a.incline != b.incline
+        and (a.incline, b.incline, b.vertical_radius) not in known
+        and (is_widened or b not in before)
+    )
+    segments = vertical.joined(segments, pace, ease, opened) if opened else segments
+    return vertical.widened(segments, pace) if is_widened else segments
 
 
 def _slopes_of_edit(elements: RoadElements, limit: Range) -> _Slopes:
@@ -265,7 +282,7 @@ def _slopes_of_proposal(elements: RoadElements, world: World, limit: Range) -> _
             room = Range(min(clear.lo, now), max(clear.hi, now))
             rooms = overlap(overlap(room, limit), asked and aim), overlap(limit, asked and aim)
             own.append(next((room for room in rooms if room and room.lo <= room.hi), limit))
-        if not element.is_turn and element.length < SHORTEST_SLOPE:  # it needs no slope of its own
+        if not element.is_turn and element.length < vertical.SHORTEST_SLOPE:  # it needs no slope of its own
             own = [limit] * len(own)
         bounds += own
         aims.append(aim)

@@ -9,9 +9,9 @@ from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.plan import read_plan
 from roadgpt.check.measures import MeasuredFeature, measure
 from roadgpt.design import draft
-from roadgpt.design.edit import Edited, edit
 from roadgpt.errors import EditError
 from roadgpt.road import Design, Segment, World, build
+from roadgpt_edit.editing import Edited, edit
 from tables import rows
 
 WORLD = World()

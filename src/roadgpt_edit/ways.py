@@ -1,7 +1,7 @@
 """Defines the steps of an edit, and lists ways to change grades and to add or remove turns and straights.
 
 A step sets the desired values of elements, and stores in ``RoadElement.asked`` the ranges in which the
-measured values must lie. ``design.fit`` then adjusts the elements that have a requirement, if the road would
+measured values must lie. ``fit`` then adjusts the elements that have a requirement, if the road would
 violate a rule, or if measured values lie outside these ranges."""
 
 from collections.abc import Sequence
@@ -18,7 +18,11 @@ from roadgpt.brief.outline import Feature, both
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import KINDS, PERCENT_SLACK, SHARPNESS, SLOPES
 from roadgpt.check.measures import Measures, way
-from roadgpt.design.edit.places import (
+from roadgpt.design.elements import straight, turn_segments
+from roadgpt.errors import EditError, UsageError
+from roadgpt.road import Segment, World
+from roadgpt.road.design import MAX_TURN
+from roadgpt_edit.places import (
     LEAST_FOR_HILL,
     PlacedChange,
     RoadStretch,
@@ -26,8 +30,7 @@ from roadgpt.design.edit.places import (
     too_short_for_hill,
     within,
 )
-from roadgpt.design.elements import straight, turn_segments
-from roadgpt.design.road_elements import (
+from roadgpt_edit.road_elements import (
     FREE_STRAIGHT,
     MILLIMETRE,
     RoadElement,
@@ -37,9 +40,6 @@ from roadgpt.design.road_elements import (
     with_inclines,
     with_stations,
 )
-from roadgpt.errors import EditError, UsageError
-from roadgpt.road import Segment, World
-from roadgpt.road.design import MAX_TURN
 
 SEPARATE = 18.0  # m between turns to the same side, so that they are seen as two
 HIDDEN = 9.0  # m between turns to the same side at which they are measured as two, without a straight

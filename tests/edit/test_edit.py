@@ -15,11 +15,11 @@ from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.model import Brief
 from roadgpt.check.measures import Measures, measure
 from roadgpt.design import draft
-from roadgpt.design.edit import Edited, edit
-from roadgpt.design.road_elements import elements_on_road, joined
 from roadgpt.errors import EditError
 from roadgpt.road import Design, Geometry, Segment, Site, World, build, in_short_segments
 from roadgpt.road.design import read_design
+from roadgpt_edit.editing import Edited, edit
+from roadgpt_edit.road_elements import elements_on_road, joined
 from tables import rows
 
 WORLD = World()

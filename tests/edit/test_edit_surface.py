@@ -4,9 +4,9 @@ import pytest
 
 from edit_truth import roads
 from roadgpt.brief.change import read_request
-from roadgpt.design.edit import edit
 from roadgpt.errors import EditError
 from roadgpt.road import World
+from roadgpt_edit.editing import edit
 
 ROAD = roads()["r01"]
 DRY = World()

@@ -7,7 +7,7 @@ more elements change. Changes of one element must agree: each sets only what its
 "tighter" keeps the angle of a turn, and "sharper" its radius. In one request they must not.
 
 Combinations of one candidate per change are tried; combinations of preferred candidates come first. The steps
-of the candidates are applied to the elements of the road. Then ``design.fit`` changes the elements that the
+of the candidates are applied to the elements of the road. Then ``fit`` changes the elements that the
 request names until the road is valid and its measurements are as requested; all other elements are frozen. If
 that fails and the geometry is ``arcs``, the other elements may change as well. The start moves if the road is
 reversed or mirrored, or if elements are added in front of it. If the road would leave the map, the road is
@@ -29,8 +29,15 @@ from roadgpt.brief.outline import Feature
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import KINDS, LEAST_STRAIGHT
 from roadgpt.check.measures import Measures, way
-from roadgpt.design.edit.places import PlacedChange, is_beyond, straights, turns
-from roadgpt.design.edit.ways import (
+from roadgpt.design.elements import straight
+from roadgpt.errors import EditError, IdleEditError, UsageError
+from roadgpt.road import Design, Geometry, World, build
+from roadgpt.road.design import MAX_SEGMENTS
+from roadgpt_edit.fit import Look, Requirements, fit, graded
+from roadgpt_edit.onto_map import moved_onto_map
+from roadgpt_edit.places import PlacedChange, is_beyond, straights, turns
+from roadgpt_edit.road_elements import RoadElement, RoadElements, elements_on_road, gap, joined, numbered
+from roadgpt_edit.ways import (
     SEPARATE,
     WIDEST,
     Adjust,
@@ -52,13 +59,6 @@ from roadgpt.design.edit.ways import (
     stretch_candidates,
     without_spare_tail,
 )
-from roadgpt.design.elements import straight
-from roadgpt.design.fit import Look, Requirements, fit, graded
-from roadgpt.design.layout import moved_onto_map
-from roadgpt.design.road_elements import RoadElement, RoadElements, elements_on_road, gap, joined, numbered
-from roadgpt.errors import EditError, IdleEditError, UsageError
-from roadgpt.road import Design, Geometry, World, build
-from roadgpt.road.design import MAX_SEGMENTS
 
 YIELDS: Mapping[What, Mapping[str, frozenset[What]]] = {
     "angle": {"radius": frozenset({"radius", "shape"})},

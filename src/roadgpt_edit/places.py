@@ -14,9 +14,9 @@ from roadgpt.brief.change.clashes import clash
 from roadgpt.brief.change.request import OF_SLOPE, Change, Place, Target, Way, What
 from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import way
-from roadgpt.design.road_elements import RoadElement, RoadElements, with_stations
 from roadgpt.errors import EditError, IdleEditError, UnclearPlaceError
 from roadgpt.road import Segment
+from roadgpt_edit.road_elements import RoadElement, RoadElements, with_stations
 
 LEAST_LENGTH = 5.0  # m of a stretch
 LEAST_PIECE = 1.0  # m of a straight segment: a shorter piece is not cut off

@@ -12,9 +12,9 @@ from roadgpt.brief.outline import Feature
 from roadgpt.brief.ranges import Range
 from roadgpt.check.measures import measure
 from roadgpt.design import draft
-from roadgpt.design.fit import Look, Requirements, fit
-from roadgpt.design.road_elements import RoadElements, elements_on_road
 from roadgpt.road import Design, World, build
+from roadgpt_edit.fit import Look, Requirements, fit
+from roadgpt_edit.road_elements import RoadElements, elements_on_road
 
 WORLD = World()
 

@@ -43,12 +43,6 @@ def original_of(path: str, run: Run | None, world: World) -> tuple[Run, Design, 
     return run, run.design, remarks
 
 
-def reject_used(out: Path | None) -> None:
-    """Raises UsageError if ``out`` is a folder that is not empty."""
-    if out is not None and out.is_dir() and any(out.iterdir()):
-        raise UsageError(f"{out} is not empty; name another folder")
-
-
 @dataclass(frozen=True)
 class _Beside:
     """Writes the change request and, if pictures are drawn, pictures of the new and the original road."""

@@ -17,7 +17,8 @@ CHANGE = ("--plan", LINE)
 
 
 @pytest.fixture(autouse=True)
-def a_design_is_there() -> None:
+def a_design_is_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
     Path("design.json").write_text(json.dumps(roads()["h01"].to_json()))
 
 

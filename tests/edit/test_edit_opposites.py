@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 
 from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.check.measures import Measures, measure
-from roadgpt.design.edit import edit
 from roadgpt.errors import EditError, IdleEditError
 from roadgpt.road import Design, Segment, World, build
+from roadgpt_edit.editing import edit
 from tables import rows
 
 PARTS = [(30, 0), (26, 50), (45, 0), (30, -60), (40, 0), (32, 70), (50, 0)]

@@ -12,9 +12,9 @@ from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.change.request import Change, EditRequest, Place, Target, Way
 from roadgpt.brief.model import Sharpness, Side
 from roadgpt.check.measures import measure
-from roadgpt.design.edit import edit
 from roadgpt.errors import EditError
 from roadgpt.road import World, build
+from roadgpt_edit.editing import edit
 from tables import rows
 
 STORED = rows(__file__, "stored")

@@ -38,13 +38,13 @@ from roadgpt.brief.scene import land_remark, parts_said, scene_text
 from roadgpt.brief.words import SURFACES
 from roadgpt.chat import ChatSettings
 from roadgpt.check.measures import MeasuredFeature, Measures, ups_and_downs, way
-from roadgpt.design.edit.candidates import RENAMED, candidates_of, made, sentence_of
-from roadgpt.design.edit.places import PlacedChange, placed
-from roadgpt.design.edit.ways import NEW, STRAIGHT
-from roadgpt.design.fit import Look
-from roadgpt.design.road_elements import RoadElement, RoadElements, elements_on_road, features_of
 from roadgpt.errors import EditError, IdleEditError, UnclearPlaceError
 from roadgpt.road import Design, Geometry, Segment, Site, World, build
+from roadgpt_edit.candidates import RENAMED, candidates_of, made, sentence_of
+from roadgpt_edit.fit import Look
+from roadgpt_edit.places import PlacedChange, placed
+from roadgpt_edit.road_elements import RoadElement, RoadElements, elements_on_road, features_of
+from roadgpt_edit.ways import NEW, STRAIGHT
 
 ALL_LISTED = 60  # changed segments; of more, only the number is given
 MOVED = 0.005  # m
