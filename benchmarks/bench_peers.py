@@ -40,7 +40,8 @@ import numpy as np
 
 from bench_search import CELLS, MAPS
 from peer_doors import COMPETITION, TOOLS, CannotRunError, prepared, segments_of, tests_in, version_of
-from roadgpt.campaign.behaviour import cell_of
+from roadgpt.campaign.columns import cell_of
+from roadgpt_search.behaviour import BOUNDS
 
 DRIVERS = ("beamng_like", "lane_centring")
 MAP_SIZE = 200  # m
@@ -172,7 +173,7 @@ def figures(out: Path) -> Figures:
     """What the files of a run tell."""
     tests = [json.loads(path.read_text(encoding="utf-8")) for path in tests_in(out)]
     failed = [test["features"] for test in tests if test.get("test_outcome") == "FAIL"]
-    cells = {"x".join(axes): len({cell_of(one, axes, CELLS) for one in failed}) for axes in MAPS}
+    cells = {"x".join(axes): len({cell_of(one, axes, CELLS, BOUNDS) for one in failed}) for axes in MAPS}
     valid = sum(test["is_valid"] for test in tests)
     return {"tests": len(tests), "valid": valid, "failures": len(failed), **cells}
 

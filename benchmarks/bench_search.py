@@ -31,12 +31,13 @@ import numpy as np
 from scipy.stats import bootstrap, mannwhitneyu
 
 from roadgpt.campaign import Cell, CellBudget, Proposal, Result
-from roadgpt.campaign.behaviour import cell_of
-from roadgpt.campaign.single_test import Task, execute, features_in, result_of
+from roadgpt.campaign.columns import cell_of, features_in
+from roadgpt.campaign.single_test import Task, execute, result_of
 from roadgpt.check import sbft_verdict
 from roadgpt.road import Limits, Road, Site, World, build
 from roadgpt.run import Request, Setup, brief_of, prove
 from roadgpt_sbft.sparseness import Sparseness, departure
+from roadgpt_search.behaviour import BOUNDS
 from roadgpt_search.genetic import Genetic
 from roadgpt_search.quality_diversity import QualityDiversity
 from roadgpt_search.random_drafts import Random
@@ -245,7 +246,7 @@ def figures(
         "margins": [result.margin for result, _ in tried],
     }
     for axes in MAPS:
-        cells = [cell_of(result.features, axes, CELLS) for result, _ in tried]
+        cells = [cell_of(result.features, axes, CELLS, BOUNDS) for result, _ in tried]
         out["x".join(axes)] = len({c for c, (result, _) in zip(cells, tried, strict=True) if result.failed})
         out["all " + "x".join(axes)] = len(set(cells))
     if judge and truth and cell.generator != "walk":

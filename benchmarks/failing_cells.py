@@ -18,7 +18,8 @@ import numpy as np
 
 from bench_search import CELLS, MAPS
 from peer_doors import tests_in
-from roadgpt.campaign.behaviour import cell_of
+from roadgpt.campaign.columns import cell_of
+from roadgpt_search.behaviour import BOUNDS
 
 OURS = "roadgpt"
 ORDERS = 200  # random orders of the runs
@@ -29,7 +30,9 @@ Cells = set[tuple[int, ...]]
 def cells_in(run: Path, axes: Sequence[str]) -> Cells:
     """Returns the cells in which a run failed."""
     tests = (json.loads(path.read_text(encoding="utf-8")) for path in tests_in(run))
-    return {cell_of(test["features"], axes, CELLS) for test in tests if test.get("test_outcome") == "FAIL"}
+    return {
+        cell_of(test["features"], axes, CELLS, BOUNDS) for test in tests if test.get("test_outcome") == "FAIL"
+    }
 
 
 def least(runs: Sequence[Cells]) -> float:

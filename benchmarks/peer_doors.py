@@ -18,7 +18,8 @@ from typing import Any
 
 from bench_search import CELLS, MAPS, walks
 from roadgpt import __version__
-from roadgpt.campaign.behaviour import cell_of
+from roadgpt.campaign.columns import cell_of
+from roadgpt_search.behaviour import BOUNDS
 
 HERE = Path(__file__).resolve().parent
 COMPETITION = "tools24"  # folder with the competition's repository of 2024
@@ -271,7 +272,9 @@ def segments_of(results: Path, competition: Path, python: str) -> dict[str, Any]
     if told is None:
         return None
     found = json.loads(told[1])
-    cells = {cell_of({"MAX_CURV": bend, "STD_SA": steering}, MAPS[0], CELLS) for bend, steering, _ in found}
+    cells = {
+        cell_of({"MAX_CURV": bend, "STD_SA": steering}, MAPS[0], CELLS, BOUNDS) for bend, steering, _ in found
+    }
     left = sum(side == "LEFT" for *_, side in found)
     return {"analysed": len(found), "left": left, "cells": len(cells)}
 

@@ -13,7 +13,6 @@ from itertools import count
 from typing import Any, TypeVar
 
 from roadgpt.brief.model import Brief
-from roadgpt.campaign.behaviour import behaviour_of
 from roadgpt.campaign.model import Cell, Proposal, Result
 from roadgpt.chat import ReplyError
 from roadgpt.check import sbft_verdict
@@ -24,6 +23,7 @@ from roadgpt.road import ORACLES, Design, Limits, Road, Site, World, build
 from roadgpt.run import Request, Setup, brief_of, perform
 from roadgpt.run.execution import FEWEST_RECORDS, features_of, features_of_drive
 from roadgpt_sbft.client import ClientTestGenerator
+from roadgpt_search.behaviour import behaviour_of
 from roadgpt_search.quality_diversity import QualityDiversity
 
 log = logging.getLogger(__name__)

@@ -21,10 +21,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.campaign.behaviour import bounds_of
 from roadgpt.campaign.model import Goal
 from roadgpt.design.variety import PlanShape, apart
 from roadgpt.geometry.curve import Array
+from roadgpt_search.behaviour import bounds_of
 
 EDGE = 1e-6  # added to a feature times the number of cells, so that rounding puts no edge into the cell below
 

@@ -15,14 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.brief.element import Elements
-from roadgpt.campaign.behaviour import DRIVEN
-from roadgpt.campaign.boundary_pairs import paired
 from roadgpt.campaign.model import GOALS, Cell, Goal, Pool, Proposal, Result
 from roadgpt.design.elements import elements_of
 from roadgpt.design.variety import PlanShape
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design
 from roadgpt_search.archive import Archive, is_far, select, spread_out, stacked
+from roadgpt_search.behaviour import DRIVEN
+from roadgpt_search.boundary_pairs import paired
 from roadgpt_search.searching import SearchGenerator
 from roadgpt_search.surrogate import (
     FEWEST,

@@ -7,10 +7,10 @@ import numpy as np
 from pydantic import Field, ValidationError, field_validator
 
 from roadgpt.brief.model import Frozen
-from roadgpt.campaign.behaviour import BOUNDS, bounds_of
 from roadgpt.campaign.model import Cell, Pool, Proposal, Result
 from roadgpt.errors import UsageError
 from roadgpt.run import seed_of
+from roadgpt_search.behaviour import BOUNDS, bounds_of
 from roadgpt_search.variation import Candidate, VariationContext, VariationTask, make_candidate
 
 MOST_AXES = 4

@@ -26,7 +26,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.campaign.behaviour import curvature_of_lane
+from roadgpt.campaign.faults.failures import curvature_of_lane
 from roadgpt.geometry.curve import Array
 from roadgpt.road import World
 

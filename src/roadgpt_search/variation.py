@@ -21,7 +21,6 @@ from roadgpt.brief.element import Element, Elements
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
 from roadgpt.brief.ranges import Range
-from roadgpt.campaign.behaviour import DRIVEN, behaviour_of_samples
 from roadgpt.check import inspect, sbft_verdict
 from roadgpt.design import draft_road
 from roadgpt.design.elements import as_written, design_of, elements_of
@@ -35,6 +34,7 @@ from roadgpt.road import Design, World, build
 from roadgpt.road.design import MAX_INCLINE
 from roadgpt.road.road import MOST_CONTROL_POINTS, control_stations
 from roadgpt.run.execution import features_of
+from roadgpt_search.behaviour import DRIVEN, behaviour_of_samples
 from roadgpt_search.surrogate import RoadSamples, RoadStations, features_of_samples, stations_of
 
 STRAIGHTS = (1.0, 150.0)  # m

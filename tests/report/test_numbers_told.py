@@ -7,11 +7,12 @@ import math
 
 import pytest
 
+from roadgpt.campaign.model import Proposal, Result
 from roadgpt.campaign.status import CellStatus
 from roadgpt.chat import Spent
 from roadgpt.chat.model import Usage
 from roadgpt.check.measures import ups_and_downs
-from roadgpt.cli.screen import Row, metres, outside, spending
+from roadgpt.cli.screen import metres, outside, row_of, spending
 from roadgpt.cli.streams import aligned, duration
 from roadgpt.plural import plural
 from roadgpt.report.chapters.wording import decimal, p_value, percent, share_cells, share_of
@@ -77,15 +78,16 @@ def test_shares_and_decimals_of_tables() -> None:
 
 
 @pytest.mark.parametrize(
-    ("row", "told"),
+    ("features", "told"),
     [
-        (Row("a", "FAIL", "", impact_kmh=49.6, gap_m=0.0, ttc_s=0.04), "impact 50 km/h, TTC 0.0 s"),
-        (Row("a", "PASS", "", gap_m=4.04, ttc_s=1.26), "gap 4.0 m, TTC 1.3 s"),
-        (Row("a", "PASS", ""), ""),
+        ({"IMPACT": 49.6, "GAP": 0.0, "TTC": 0.04}, "impact 50 km/h, TTC 0.0 s"),
+        ({"GAP": 4.04, "TTC": 1.26, "RADIUS": 30.0}, "gap 4.0 m, TTC 1.3 s"),
+        ({"RADIUS": 30.0}, None),
     ],
 )
-def test_how_near_others_came(row: Row, told: str) -> None:
-    assert row.criticality == told
+def test_how_near_others_came(features: dict[str, float], told: str | None) -> None:
+    result = Result(1, 0, Proposal(None, 1, "draft"), "PASS", "", features=features)
+    assert row_of(result).told_numbers.get("others") == told
 
 
 def test_tests_without_words_are_named_by_their_generator() -> None:

@@ -9,8 +9,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadgpt.brief.element import Element
-from roadgpt.campaign.behaviour import bounds_of
-from roadgpt.campaign.boundary_pairs import paired
 from roadgpt_search.archive import (
     ANYWHERE,
     NOVELTY,
@@ -18,6 +16,8 @@ from roadgpt_search.archive import (
     select,
     spread_out,
 )
+from roadgpt_search.behaviour import bounds_of
+from roadgpt_search.boundary_pairs import paired
 
 MAPS = [
     (("MAX_CURV", "STD_SA"), 25),

@@ -7,12 +7,12 @@ import pytest
 
 from campaign.quick import features_of_road
 from roadgpt.brief import read
-from roadgpt.campaign.behaviour import behaviour_of
 from roadgpt.design import draft
 from roadgpt.geometry import interpolate
 from roadgpt.road import Design, Road, Site, World, build
 from roadgpt.run import prove
 from roadgpt.run.execution import features_of
+from roadgpt_search.behaviour import behaviour_of
 from roadgpt_search.surrogate import NAMES, STEERING
 from roadgpt_search.variation import (
     Kind,

@@ -14,7 +14,6 @@ from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import Store
 from roadgpt.campaign.single_test import FinishedTest
 from roadgpt.report.campaign_report import write_store_report
-from roadgpt.road import Design, Segment
 from roadgpt.run.model import Request, Seconds
 
 CELLS, TESTS = ("c01", "c02"), 300
@@ -135,11 +134,12 @@ def test_a_drive_that_ended_where_it_failed_has_no_margin_to_tell(campaign: Path
 
 def test_bars_and_cells_hold_every_test(campaign: Path) -> None:
     """The curve ends at all failures, and maps hold all tests that have features."""
+    from roadgpt.campaign.columns.execution import columns
     from roadgpt.campaign.record import Record
     from roadgpt.report.campaign_report import _map, coverage
 
     with Record.opened(campaign) as record:
-        sums = _map(record, "MAX_CURV", "DIR_COV", 1)
+        sums = _map(record, ("MAX_CURV", "DIR_COV"), columns.bounds, 1)
         figures = coverage(record, 2 * TESTS)
     told = [r for _, r in drawn() if r.features]
     assert sums.sum() == len(told)
@@ -152,46 +152,3 @@ def test_bars_and_cells_hold_every_test(campaign: Path) -> None:
     assert np.abs(sums - theirs).sum() <= 2  # rounding at the border of a cell
     assert len(figures) == 1
     assert "largest curvature, 1/m" in figures[0].svg
-
-
-def straight_turn_straight(first: float, incline: float = 0.0) -> Design:
-    legs = [
-        Segment(distance=first, direction="straight"),
-        Segment(distance=40, direction="left", turn_degrees=60),
-        Segment(distance=30, direction="straight", incline=incline),
-    ]
-    return Design(starting_point=(60, 60, 0), theta=0, segments=tuple(legs))
-
-
-def test_the_nearest_pairs_of_a_search_for_the_boundary_are_listed(tmp_path: Path) -> None:
-    """By the weights of the explanation: 10 m of a straight and 1 % of a grade are 1 each."""
-    roads = {
-        1: ("PASS", straight_turn_straight(50)),
-        2: ("PASS", straight_turn_straight(50, 7)),
-        3: ("FAIL", straight_turn_straight(90, 7)),
-        4: ("FAIL", straight_turn_straight(50, 2)),
-        5: ("INVALID", straight_turn_straight(50)),
-    }
-    plan = Plan(prompts=("a road with a turn",), goal="boundary", budget=CellBudget(tests=5))
-    request = Request(words="a road with a turn")
-    cell = Cell("c01", request, None, "quality_diversity", "boundary", budget=CellBudget(tests=5))
-    with Store.new(tmp_path, plan.model_dump_json(), [cell], {"any": {"roadgpt": "1"}}) as store:
-        store.begin_session(1)
-        proposals = {number: Proposal(design, number, "draft") for number, (_, design) in roads.items()}
-        store.add_batch("c01", 0, 1, [*proposals.values()])
-        for number, (outcome, design) in roads.items():
-            margin = {"PASS": 0.25, "FAIL": -1e-5}.get(outcome)
-            result = Result(
-                number, 0, proposals[number], outcome, outcome, design, 120.0, margin,  # type: ignore[arg-type]
-                at_s=52.0 if outcome == "FAIL" else None, cause="out of lane" if outcome == "FAIL" else None,
-            )  # fmt: skip
-            store.keep([("c01", FinishedTest(result, seconds=Seconds(0.01, 0.1)))], None, {"c01": 1.0})
-        store.finish()
-    write_store_report(tmp_path)
-    assert [[*row.values()] for row in rows(tmp_path, "pairs")] == [
-        ["c01/1", "0.25", "c01/4", "52.0", "2.0", "straight 2: grade 0 %, then 2 %"],
-        ["c01/2", "0.25", "c01/3", "52.0", "4.0", "straight 1: length 50 m, then 90 m"],
-    ]
-    text = words_of(tmp_path)
-    assert "c01/1, where the car kept its lane, and c01/4, where it did not" in text
-    assert f"roadgpt view {tmp_path}/c01/1 {tmp_path}/c01/4" in text

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from roadgpt.campaign.columns import features_in
 from roadgpt.campaign.faults.failures import manner_of, reason_of
 from roadgpt.campaign.model import Proposal
-from roadgpt.campaign.single_test import Task, features_in, result_of
+from roadgpt.campaign.single_test import Task, result_of
 from roadgpt.cli.screen import row_of
 from roadgpt.drive import Columns, Drive
 from roadgpt.errors import UsageError

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from roadgpt.campaign.behaviour import BOUNDS, cell_of
+from roadgpt.campaign.columns import bounds_of_columns, cell_of
 from roadgpt.campaign.model import Cell
 from roadgpt.campaign.record import MEASURED, Record, reading_store
 from roadgpt.campaign.status import CellStatus, cell_statuses
@@ -98,8 +98,12 @@ def _cell_row(record: Record, cell: Cell, status: CellStatus) -> dict[str, Any]:
 
 def _failing_cells(record: Record, cell: Cell) -> int:
     """Counts the bins of the feature map that contain failures: a measure of how much these differ."""
-    axes, cells = cell.settings.get("axes", AXES), cell.settings.get("cells", PER_AXIS)
-    if not isinstance(axes, (list, tuple)) or not isinstance(cells, int) or not {*axes} <= {*BOUNDS}:
+    axes, cells, bounds = (
+        cell.settings.get("axes", AXES),
+        cell.settings.get("cells", PER_AXIS),
+        bounds_of_columns(),
+    )
+    if not isinstance(axes, (list, tuple)) or not isinstance(cells, int) or not {*axes} <= {*bounds}:
         axes, cells = AXES, PER_AXIS  # another generator's settings mean something else
     failures = record.stream(
         "SELECT features FROM tests JOIN details USING (cell, number) "
@@ -107,5 +111,5 @@ def _failing_cells(record: Record, cell: Cell) -> int:
         (cell.name,),
     )
     with reading_store(record.path):
-        places = {cell_of(json_of(features), axes, cells) for (features,) in failures}
+        places = {cell_of(json_of(features), axes, cells, bounds) for (features,) in failures}
     return len(places - {None})

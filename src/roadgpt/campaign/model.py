@@ -117,7 +117,7 @@ class Result:
     handed_to: str | None = None
     """Who drove where the car failed, if the driver had handed over; see ``Verdict.handed_to``."""
     features: Mapping[str, float] = field(default_factory=dict)
-    """Features of the road and of the drive, by name: see ``run.execution`` and ``campaign.behaviour``."""
+    """Features of the road and of the drive, by name: see ``campaign.columns``."""
 
     @property
     def plain_design(self) -> Design | None:

@@ -96,6 +96,7 @@ class WorkerSetup:
 def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTest | OutOfAllowance:
     """Runs one test of a campaign whose results go into a store. A drafted road must differ from all of the
     ``earlier`` designs."""
+    from roadgpt.campaign.columns import features_in
     from roadgpt.campaign.traces import trace_of
 
     meter = Meter(task.allowance.tokens, task.allowance.cost)
@@ -160,24 +161,6 @@ def error_run(task: Task, cell: Cell, sentence: str, trace: str = "") -> Run:
 def seed_of_driver(number: int, proposal: Proposal) -> int:
     """Returns the driver's seed in test ``number``; a road that the worker designs has the same seed."""
     return seed_of(proposal.seed, number) if proposal.design is None else proposal.seed
-
-
-def features_in(run: Run) -> dict[str, float]:
-    """Returns the features of a valid road and its drive by name; empty for an invalid road."""
-    from roadgpt.campaign.behaviour import among_others, behaviour_of
-    from roadgpt.run.execution import PER_POINT, features_of, records_of
-
-    if run.road is None or (run.findings and run.drive is None):
-        return {}
-    records = records_of(run.road, run.drive, run.world) if run.drive is not None else []
-    found = features_of(run.road.centreline(PER_POINT), records) | behaviour_of(run.road, run.brief)
-    if run.world.has_ground and run.road.has_way:
-        from roadgpt.network.sight import sight_along
-
-        found["SIGHT"] = round(min(float(sight_along(run.road, run.world)[1].min()), run.road.length), 1)
-    if run.drive is not None and run.drive.others is not None and run.verdict is not None:
-        found |= among_others(run.verdict)
-    return found
 
 
 def result_of(run: Run, task: Task, features: Mapping[str, float]) -> Result:

@@ -33,10 +33,9 @@ MARKS = {"FAIL": "failure", "ERROR": "error"}
 SKIPPED = ("INVALID", "NOT TESTED", "UNAVOIDABLE")
 COUNTED = {"FAIL": "failures", "ERROR": "errors", **dict.fromkeys(SKIPPED, "skipped")}
 LONGEST = 120  # letters of a suite's name
-IN_CASE = (
-    "words", "origin", "scenario", "parameters", "gap_m", "ttc_s", "impact_kmh", "seed", "max_oob",
-    "beyond_m", "margin_m", "length_m", "at_s_m", "side", "own_share", "handed_to",
-)  # fmt: skip
+OF_TEST = ("words", "origin", "scenario", "parameters")
+OF_DRIVE = ("seed", "max_oob", "beyond_m", "margin_m", "length_m", "at_s_m", "side", "own_share", "handed_to")
+"""The properties of a case before and after the numbers of the plug-ins ``columns``."""
 TIMES = (
     "SELECT number, coalesce(design_s, 0) + coalesce(drive_s, 0) FROM tests "
     "WHERE cell = ? AND outcome IS NOT NULL"
@@ -127,7 +126,9 @@ def _add_case(suite: XmlElement, row: Row, classname: str) -> None:
         says = f"worse than in the baseline: {row.worse}; {says}"
     case = {"name": row.name or row.file, "classname": classname, "time": f"{row.seconds:.3f}"}
     element = suite.add("testcase", {**case, **({"file": row.file} if row.file else {})})
-    _add_properties(element, {name: getattr(row, name) for name in IN_CASE})
+    numbers = {each.key: each.value for each in row.numbers}
+    of_test, of_drive = ({name: getattr(row, name) for name in names} for names in (OF_TEST, OF_DRIVE))
+    _add_properties(element, {**of_test, **numbers, **of_drive})
     if COUNTED.get(outcome) == "skipped":
         element.add("skipped", {"message": says})
     elif outcome in MARKS:

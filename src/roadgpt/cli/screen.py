@@ -20,6 +20,7 @@ from roadgpt.cli.streams import apart, is_coloured, progress, shown
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from roadgpt.campaign.columns import ToldNumber
     from roadgpt.campaign.gate import Gate
     from roadgpt.campaign.model import Result
     from roadgpt.chat import Spent
@@ -82,9 +83,7 @@ class Row:
     handed_to: str | None = None  # who drove where the car failed, if the driver had handed over
     scenario: str = ""
     parameters: str = ""  # of the scenario, where they are not the nominal ones
-    gap_m: float | None = None  # least distance to somebody ahead in the same lane; 0 at a collision
-    ttc_s: float | None = None  # least time to collision
-    impact_kmh: float | None = None  # difference of the velocities in the first collision
+    numbers: "tuple[ToldNumber, ...]" = ()  # those of the plug-ins ``columns`` that are told
     at_fault: bool | None = None  # whether the first collision was the car's fault; None without one
     seconds: float = 0.0
     name: str = ""  # a shorter name, which is printed instead of ``file``; if empty, ``file`` is printed
@@ -114,22 +113,18 @@ class Row:
         return f"PASS ({outside(self.max_oob, self.beyond_m)})"
 
     @property
-    def among_others(self) -> dict[str, Any]:
-        """What there is only of tests with others on the road, by name."""
-        names = ("scenario", "parameters", "gap_m", "ttc_s", "impact_kmh")
-        return {name: found for name in names if (found := getattr(self, name)) not in ("", None)}
-
-    @property
     def test(self) -> str:
         """The scenario with its parameters, as ``--scenario`` takes it."""
         return f"{self.scenario} {self.parameters}".rstrip()
 
     @property
-    def criticality(self) -> str:
-        """In words, how near the car came to others; empty if nobody was there or ever ahead of it."""
-        told = [] if self.impact_kmh is None else [f"impact {self.impact_kmh:.0f} km/h"]
-        told += [f"gap {self.gap_m:.1f} m"] if self.gap_m and not told else []
-        return ", ".join(told + ([] if self.ttc_s is None else [f"TTC {self.ttc_s:.1f} s"]))
+    def told_numbers(self) -> dict[str, str]:
+        """In words, the numbers of each plug-in ``columns``, such as how near the car came to others."""
+        parts = dict.fromkeys(each.part for each in self.numbers if each.text)
+        return {
+            part: ", ".join(each.text for each in self.numbers if each.part == part and each.text)
+            for part in parts
+        }
 
     def to_json(self) -> str:
         """Returns the row as one line of JSON."""
@@ -139,7 +134,8 @@ class Row:
             told["cost_usd"] = self.spent.cost
         if self.at_fault is not None:
             told["at_fault"] = self.at_fault
-        told |= {name: _rounded(found) for name, found in self.among_others.items()}
+        told |= {name: found for name in ("scenario", "parameters") if (found := getattr(self, name))}
+        told |= {each.key: _rounded(each.value) for each in self.numbers}
         if self.worse:
             told["worse"] = self.worse
         return json.dumps(told)
@@ -149,7 +145,7 @@ class Row:
         length = "" if self.length_m is None else f"{self.length_m:6.1f} m"
         margin = "" if self.margin_m is None else f"margin {metres(self.margin_m)}"
         line = f"{self.told:<{MOST_TOLD}} {length:>9}  {margin:<15}  {self.name or self.file}"
-        line += "".join(f"  {each}" for each in (self.test, self.criticality) if each)
+        line += "".join(f"  {each}" for each in (self.test, *self.told_numbers.values()) if each)
         if self.own_share is not None:
             line += f"  drove {100 * self.own_share:.0f} % itself"
         if self.worse:
@@ -217,17 +213,16 @@ def summary(rows: Sequence[Row]) -> list[tuple[str, int, str, str, str]]:
 def row_of(run: "Run | Result", file: str = "", **more: Any) -> Row:
     """Returns the row of a Run, whose road file is ``file``, or of a stored result; ``more`` are further
     fields."""
+    from roadgpt.campaign.columns import told_of
     from roadgpt.run.model import Run
 
     found: Verdict | Result | None = None
+    more["numbers"] = told_of(run if isinstance(run, Run) else run.features)
     if isinstance(run, Run):
         found, is_valid, length = run.verdict, run.is_valid, run.length if run.road else None
         findings = tuple(finding.sentence for finding in run.findings)
         more |= {"validation_message": run.validation_message, "findings": findings, "spent": run.spent}
-        contact = run.verdict and run.verdict.first_contact
         more["at_fault"] = run.verdict and run.verdict.is_at_fault
-        more |= {"gap_m": run.verdict.least_gap, "ttc_s": run.verdict.least_ttc} if run.verdict else {}
-        more["impact_kmh"] = 3.6 * contact.impact_speed if contact else None
         test = run.request.setup.scenario
         more |= {"words": run.words, "seed": run.seed, "trace": run.trace}
         # as tables of tests hold them
@@ -235,8 +230,6 @@ def row_of(run: "Run | Result", file: str = "", **more: Any) -> Row:
     else:
         found, is_valid, length = run, run.outcome not in ("INVALID", "ERROR"), run.length or None
         more["at_fault"] = bool(run.features["AT_FAULT"]) if "AT_FAULT" in run.features else None
-        of_features = {"gap_m": "GAP", "ttc_s": "TTC", "impact_kmh": "IMPACT"}
-        more |= {name: run.features.get(feature) for name, feature in of_features.items()}
         test = more.pop("test", "")
     if found is not None:
         more |= {"max_oob": found.max_oob, "beyond_m": found.beyond, "margin_m": found.margin}

@@ -204,7 +204,7 @@ def _cell_lines(place: Selection) -> Iterator[str]:
 def _line_of(row: Row) -> str:
     margin = "" if row.margin_m is None else metres(row.margin_m)
     measured = f"{row.outcome:<{WIDEST}} {row.length_m or 0:>5.0f} m {margin:>9}"
-    what = "; ".join(each for each in (row.test, row.criticality) if each)
+    what = "; ".join(each for each in (row.test, *row.told_numbers.values()) if each)
     return f"{row.file or row.name}  {measured}  {what}{': ' * bool(what)}{row.description}"
 
 
@@ -248,8 +248,7 @@ def _run_lines(run: Run, again: Sequence[str]) -> Iterator[str]:
         )
         if row.test:
             yield f"  scenario  {row.test}"
-        if row.criticality:
-            yield f"  others    {row.criticality}"
+        yield from (f"  {part:<8}  {text}" for part, text in row.told_numbers.items())
         if verdict.law is not None:
             other = next(str(each.other) for each in verdict.incidents or () if each.contact)
             told = verdict.law.said(other) or "nobody's offence"

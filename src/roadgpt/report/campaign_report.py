@@ -12,17 +12,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.campaign.behaviour import BOUNDS
-from roadgpt.campaign.boundary_pairs import BoundaryPair, pairs_of, weightiest
+from roadgpt.campaign.columns import bounds_of_columns, told_of
 from roadgpt.campaign.faults.fault import faults_in
 from roadgpt.campaign.folder_record import kept_run
-from roadgpt.campaign.model import Result
-from roadgpt.campaign.record import Record
+from roadgpt.campaign.record import Record, reading_store
 from roadgpt.campaign.status import CellStatus, Status, status_of
-from roadgpt.design.elements import elements_of
 from roadgpt.errors import RoadGPTError, command_line, explained
 from roadgpt.plural import plural
+from roadgpt.reading import json_of
 from roadgpt.report.canvas import save_all
+from roadgpt.report.chapters import with_chapters
 from roadgpt.report.chapters.faults import fault_summaries, faults, headline
 from roadgpt.report.chapters.roads import CELLS, MAPS, feature_map
 from roadgpt.report.chapters.validity import outside_sentences, outside_table, passed_tests
@@ -56,16 +55,6 @@ NAMED = 30  # failures, and pairs of roads of a campaign with one cell, that are
 STEPS = 200  # of a curve
 SAMPLE = 100_000  # tests whose features are read, evenly spread
 MARGINS = (-2.0, 2.0, 0.1)  # m: from, to, width of a bar; what lies beyond is in the outermost
-MOST_SEARCHED = 1000  # tests of all cells in which pairs are searched, those between two others first
-FEW_PAIRS = 10  # pairs that are shown per cell for a campaign with several cells
-NEAR = (
-    "tests.number IN (SELECT number FROM tests JOIN details USING (cell, number) WHERE tests.cell = ? "
-    "AND outcome IN ('PASS', 'FAIL') ORDER BY origin LIKE 'between %' DESC, number DESC LIMIT ?)"
-)
-EXPLAINED = (
-    "Distance: the root of the summed squares of all differences, where 10 m of a straight, 2 m of a radius "
-    "or a clothoid, 10 degrees of a turn and 1 % of a grade are 1 each. Each road stands in one pair."
-)
 
 
 def write_store_report(folder: Path, command: str = "") -> Path:
@@ -87,10 +76,8 @@ def _page(folder: Path, record: Record, status: Status, command: str) -> Page:
     lead += "" if status.is_finished else "; the campaign is unfinished"
     found = faults_in(folder, COMPARED)
     summaries = fault_summaries(folder, found)
-    pairs = nearest(record, [each for each in fields if each.goal == "boundary"][:MOST_CELLS])
     gallery, covered = faults(folder, found, summaries), coverage(record, status.done)
-    sections = [same_roads(folder, record)] if is_paired else []
-    sections += [gallery] if gallery else []
+    sections = [gallery] if gallery else []
     sections += [Section("Feature map", covered)] if covered else []
     sections.append(Section("Outcomes", _outcomes(record, status, fields, is_paired)))
     if status.scenarios:
@@ -102,10 +89,11 @@ def _page(folder: Path, record: Record, status: Status, command: str) -> Page:
         sections.append(Section("Failures", failures(folder, record, fields[:MOST_CELLS], goes_on)))
         near: list[Block] = [*outside_table(passed_tests(record)), margins(record, goes_on)]
         sections.append(Section("How near to failing", near))
-    sections += [Section("At the boundary", boundary(folder, pairs))] if pairs else []
-    summary = compared(record) if is_paired else []
-    summary += headline(found, summaries, status.outcomes) if _driven(status)[1] else []
-    summary += [*_summary(record, first, status, fields), *nearest_sentence(pairs)]
+    summary = headline(found, summaries, status.outcomes) if _driven(status)[1] else []
+    summary += _summary(record, first, status, fields)
+    sections, summary = with_chapters(record, sections, summary)
+    if is_paired:
+        sections, summary = [same_roads(folder, record), *sections], [*compared(record), *summary]
     return Page(title, summary, sections, _card(command, record, status), lead)
 
 
@@ -255,11 +243,14 @@ def failures(
     blocks: list[Block] = [_curves(record, cells), *_causes(record, drives_on)]
     order = "margin IS NULL, margin, cell, number" if drives_on else "cell, number"
     some = record.query(
-        "SELECT cell, number, margin, max_oob, cause, side, at_s, description FROM "  # noqa: S608 - our words
+        "SELECT cell, number, margin, max_oob, cause, side, at_s, description, features FROM "  # noqa: S608 - ours
         f"(SELECT * FROM tests WHERE outcome = 'FAIL' ORDER BY {order} LIMIT ?) JOIN details "
         f"USING (cell, number) ORDER BY {order}",
         (NAMED,),
     )
+    with reading_store(record.path):
+        numbers = [{its.key: its.value for its in told_of(json_of(found))} for *_, found in some]
+    keys = [*dict.fromkeys(key for own in numbers for key in own)]
     rows = [
         row(
             cell(f"{name}/{number}", href=again(folder, name, number)),
@@ -267,13 +258,16 @@ def failures(
             cause or "",
             side or "",
             decimal(at_s, 0),
+            *(decimal(own.get(key)) for key in keys),
             says or "",
         )
-        for name, number, margin, outside, cause, side, at_s, says in some
+        for (name, number, margin, outside, cause, side, at_s, says, _), own in zip(
+            some, numbers, strict=True
+        )
     ]
     if rows:
         note = f"To see one: {command_line('view', f'{folder}/{rows[0][0].value}')}"
-        heads = ["test", *_far_heads(drives_on), "cause", "side", "at, m", "what happened"]
+        heads = ["test", *_far_heads(drives_on), "cause", "side", "at, m", *keys, "what happened"]
         ((every,),) = record.query("SELECT count(*) FROM tests WHERE outcome = 'FAIL'")
         blocks.append(Table("failures", _caption(len(rows), every, drives_on), heads, rows, note))
     return blocks
@@ -363,78 +357,29 @@ def coverage(record: Record, done: int) -> list[Block]:
     known = {*record.feature_names()}
     every = max(1, -(-done // SAMPLE))
     part = f" of every {every:,}th test" if every > 1 else ""
-    blocks: list[Block] = []
+    blocks, bounds = list[Block](), bounds_of_columns()
     for pair in MAPS:
         if {*pair} <= known:
             caption = f"Tests{part} by {pair[0]} and {pair[1]}: {{}} are filled."
-            blocks += feature_map("map", _map(record, *pair, every), pair, BOUNDS, "tests", caption)
+            counts = _map(record, pair, bounds, every)
+            blocks += feature_map("map", counts, pair, bounds, "tests", caption)
     return blocks
 
 
-def _map(record: Record, across: str, upwards: str, every: int) -> NDArray[np.float64]:
-    (x0, x1), (y0, y1) = BOUNDS[across], BOUNDS[upwards]
+def _map(
+    record: Record, pair: tuple[str, str], bounds: Mapping[str, tuple[float, float]], every: int
+) -> NDArray[np.float64]:
+    (x0, x1), (y0, y1) = (bounds[axis] for axis in pair)
     rows = record.query(
         "SELECT CAST((x - ?) * ? AS INTEGER), CAST((y - ?) * ? AS INTEGER), count(*) FROM "
         "(SELECT json_extract(features, ?) AS x, json_extract(features, ?) AS y FROM details "
         "WHERE number % ? = 0 AND features IS NOT NULL) WHERE x IS NOT NULL AND y IS NOT NULL GROUP BY 1, 2",
-        (x0, CELLS / (x1 - x0), y0, CELLS / (y1 - y0), f"$.{across}", f"$.{upwards}", every),
+        (x0, CELLS / (x1 - x0), y0, CELLS / (y1 - y0), *(f"$.{axis}" for axis in pair), every),
     )
     out = np.zeros((CELLS, CELLS))
     for column, line, count in rows:
         out[min(max(line, 0), CELLS - 1), min(max(column, 0), CELLS - 1)] += count
     return out
-
-
-Side = tuple[str, BoundaryPair, Result, Result]
-"""Two similar roads from one campaign cell (one combination of prompt, designer, driver and so on): the cell,
-the pair, the test that passed and the test that failed."""
-
-
-def nearest(record: Record, cells: Sequence[CellStatus]) -> list[Side]:
-    """Returns the pairs of a passed and a failed test that differ least, as ``campaign.boundary_pairs``
-    measures it: up to NAMED for one cell, otherwise up to FEW_PAIRS per cell."""
-    out = []
-    for each in cells:
-        some = (each.name, MOST_SEARCHED // len(cells))
-        results = {result.number: result for result in record.results(each.name, NEAR, some)}
-        for pair in pairs_of([*results.values()])[: NAMED if len(cells) == 1 else FEW_PAIRS]:
-            out.append((each.name, pair, results[pair.kept], results[pair.lost]))
-    return out
-
-
-def nearest_sentence(pairs: Sequence[Side]) -> list[str]:
-    """Returns a sentence for the summary on the pair of roads that differ least, if there is one."""
-    if not pairs:
-        return []
-    cell_name, best, *_ = min(pairs, key=lambda side: side[1].distance)
-    return [
-        f"Nearest to each other on either side of the boundary are tests {cell_name}/{best.kept}, where "
-        f"the car kept its lane, and {cell_name}/{best.lost}, where it did not: "
-        f"their distance, as told below, is {best.distance:.2f}."
-    ]
-
-
-def boundary(folder: Path, pairs: Sequence[Side]) -> list[Block]:
-    """Returns a table of pairs of roads, with the largest difference of each pair."""
-    rows = [_row(folder, *side) for side in pairs]
-    name, first, *_ = pairs[0]
-    names = [f"{folder}/{name}/{at}" for at in (first.kept, first.lost)]
-    note = f"{EXPLAINED} To see a pair: {command_line('view', *names)}"
-    heads = ["kept", "margin, m", "lost", "at, m", "distance", "what differs most, kept then lost"]
-    return [Table("pairs", "Nearest pairs of a road that was kept and one that was lost", heads, rows, note)]
-
-
-def _row(folder: Path, name: str, pair: BoundaryPair, kept: Result, lost: Result) -> list[TableCell]:
-    assert kept.plain_design is not None
-    assert lost.plain_design is not None
-    return row(
-        cell(f"{name}/{pair.kept}", href=again(folder, name, pair.kept)),
-        decimal(kept.margin),
-        cell(f"{name}/{pair.lost}", href=again(folder, name, pair.lost)),
-        decimal(lost.at_s, 0),
-        decimal(pair.distance),
-        weightiest(elements_of(kept.plain_design.segments), elements_of(lost.plain_design.segments)),
-    )
 
 
 PICTURES = "differ"

@@ -7,9 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from roadgpt.campaign.faults.fault import faults_in
+from roadgpt.campaign.folder_record import open_record
 from roadgpt.campaign.status import no_failure
 from roadgpt.errors import UsageError
 from roadgpt.plural import plural
+from roadgpt.report.chapters import with_chapters
 from roadgpt.report.chapters.alignment import alignment
 from roadgpt.report.chapters.faults import fault_summaries, faults, headline
 from roadgpt.report.chapters.roads import coverage, every_road, overview
@@ -62,13 +64,17 @@ def write_run_report(folder: Path, command: str = "") -> Path:
         left = source_of(setup.designer, parts, LEFT)
         sections += [departures(parts, [left] if left.total else [])]
     sections += [alignment(parts, [setup.designer])] if request.words else []
+    sections += comparisons_of(parts, world)
     outcomes = Counter(road.outcome for road in part.roads)
     far = _least(part.roads, "FAIL") if setup.keep_driving else None
     sentences = sentences_of(parts, world, near_and_far(_least(part.roads, "PASS"), far))
+    told = headline(failed, summaries, outcomes) if summaries else no_failure(outcomes)
+    with open_record(folder) as record:
+        sections, sentences = with_chapters(record, sections, [*told, *sentences])
     page = Page(
         words,
-        [*(headline(failed, summaries, outcomes) if summaries else no_failure(outcomes)), *sentences],
-        [*sections, *comparisons_of(parts, world)],
+        sentences,
+        sections,
         card_of(command, card.roads, request.seed, setup, world, parts),
         f"{plural(len(part.roads), 'road')} of {card.roads:,}, seed {request.seed}",
     )

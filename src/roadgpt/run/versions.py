@@ -56,7 +56,7 @@ def versions_of(setups: Sequence[Setup], driver: Any = None, generators: Iterabl
         settings = plugins.find("settings", name)
         found |= {each: _version(each) for each in settings.libraries} | {name: settings.of().summary()}
     used = {("generators", name) for name in generators}
-    used |= {("rules", name) for name in plugins.names("rules")}
+    used |= {(kind, name) for kind in ("rules", "columns") for name in plugins.names(kind)}
     found |= {f"tracks {Path(its.tracks).name}": digest(Path(its.tracks)) for its in driven if its.tracks}
     for its in setups:
         reader, _, place = its.reader.partition(":")

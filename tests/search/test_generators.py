@@ -15,14 +15,15 @@ from roadgpt import check, plugins
 from roadgpt.brief import read
 from roadgpt.brief.model import Brief
 from roadgpt.campaign import Cell, CellBudget, Goal, Proposal, Result
-from roadgpt.campaign.behaviour import behaviour_of, cell_of
-from roadgpt.campaign.boundary_pairs import distance, pairs_of
+from roadgpt.campaign.columns import cell_of
 from roadgpt.design import draft
 from roadgpt.design.elements import elements_of
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, Site, World, build
 from roadgpt.run import Request, Setup
 from roadgpt.run.execution import features_of
+from roadgpt_search.behaviour import BOUNDS, behaviour_of
+from roadgpt_search.boundary_pairs import distance, pairs_of
 
 WORLD = World(site=Site(map_size=200))
 SMALL = {"batch": 5}
@@ -141,7 +142,7 @@ def test_a_search_finds_more_failures_in_more_cells_than_drafts_do() -> None:
     found = {}
     for name in SEARCHES:
         results, _ = known(name, FLAT, "failures", 6)
-        cells = {cell_of(r.features, ("MAX_CURV", "STD_SA"), 25) for r in results if r.failed}
+        cells = {cell_of(r.features, ("MAX_CURV", "STD_SA"), 25, BOUNDS) for r in results if r.failed}
         found[name] = sum(result.failed for result in results), len(cells)
     assert found["quality_diversity"][0] > 2 * found["random"][0]
     assert found["quality_diversity"][1] > 1.5 * found["random"][1]
@@ -198,7 +199,7 @@ def test_coverage_fills_the_map_faster_than_failures_do() -> None:
     goals: tuple[Goal, ...] = ("coverage", "failures")
     for goal in goals:
         results, _ = known("quality_diversity", FLAT, goal, 6)
-        reached[goal] = len({cell_of(r.features, ("MAX_CURV", "STD_SA"), 25) for r in results})
+        reached[goal] = len({cell_of(r.features, ("MAX_CURV", "STD_SA"), 25, BOUNDS) for r in results})
     assert reached["coverage"] > reached["failures"]
 
 

@@ -8,8 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from roadgpt.brief import read
-from roadgpt.campaign.behaviour import BOUNDS, behaviour_of, cell_of, directions
+from roadgpt.campaign.columns import cell_of
 from roadgpt.road import Design, Segment, build
+from roadgpt_search.behaviour import BOUNDS, behaviour_of, directions
 
 
 def bend(turn: float, radius: float, incline: float = 0.0) -> Segment:
@@ -76,7 +77,7 @@ def test_directions_are_counted_all_round(start: float, tens: int) -> None:
 def test_a_cell_is_the_one_whose_borders_enclose_the_value(
     curvature: float, angle: float, cells: int
 ) -> None:
-    found = cell_of({"MAX_CURV": curvature, "STD_SA": angle}, ("MAX_CURV", "STD_SA"), cells)
+    found = cell_of({"MAX_CURV": curvature, "STD_SA": angle}, ("MAX_CURV", "STD_SA"), cells, BOUNDS)
     assert found is not None
     for axis, value, at in zip(("MAX_CURV", "STD_SA"), (curvature, angle), found, strict=True):
         low, high = BOUNDS[axis]

@@ -2,8 +2,8 @@
 
 This space is called the feature map. It is divided into cells or bins, which are not the cells of a campaign.
 
-``run.execution`` has the five features of the SBFT competition: MAX_CURV, DIR_COV, STD_SA, MEAN_LP, MAX_LP.
-This module adds features of the road's geometry; all but the first come from ``check.measures``:
+RoadGPT itself has the five features of the SBFT competition: MAX_CURV, DIR_COV, STD_SA, MEAN_LP, MAX_LP. This
+module adds features of the road's geometry; most come from ``check.measures``:
 
     DIR_COV_360   share of the 36 sectors of 10 degrees that contain a heading of the road
     RADIUS        smallest radius, m
@@ -13,44 +13,29 @@ This module adds features of the road's geometry; all but the first come from ``
     GRADE         steepest grade, percent
     CLIMB         height of the end above the start, m
     LENGTH        length, m
-
     SIGHT         in land: least distance at which the driver sees the road, m
-
-and, of a drive with others on the road, what its verdict says:
-
-    COLLISIONS, NEAR_MISSES, BLOCKED, SPEEDING   numbers of these incidents
-    AT_FAULT      whether the first collision was the tested car's fault, 1 or 0
-    IMPACT        difference of the velocities in the first collision, km/h
-    GAP           least gap to somebody ahead in the same lane, m; 0 at a collision
-    TTC           least time to collision, s
 
 If a description states the number of turns, each turn has features of its own, in driving order: RADIUS_1,
 DEGREES_1, RADIUS_2, ..."""
-
-from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
+from roadgpt.campaign.columns import Columns
+from roadgpt.campaign.columns.execution import columns as of_competition
 from roadgpt.check.measures import measure
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road
-from roadgpt.verdict import Verdict
+from roadgpt.run import Run
 
 DRIVEN = ("STD_SA", "MEAN_LP", "MAX_LP", "SIGHT")  # the features that a sketch of a road has not
 DIRECTIONS = 36  # of 10 degrees each
 WIDEST = 1000.0  # m; larger radii count as this radius
-TIGHTEST = 0.2  # 1 + 2k is kept above this
 MOST_TURNS = 6  # that have features of their own
 DECIMALS = 6
 
-BOUNDS: dict[str, tuple[float, float]] = {
-    "MAX_CURV": (0.0, 0.07),  # 1/m: the competition's tightest turn is 0.0698
-    "DIR_COV": (0.0, 1.0),
-    "STD_SA": (0.0, 150.0),  # degrees at the steering wheel
-    "MEAN_LP": (-2.0, 2.0),  # m
-    "MAX_LP": (0.0, 2.0),  # m
+OWN_BOUNDS = {
     "DIR_COV_360": (0.0, 1.0),
     "RADIUS": (10.0, 110.0),  # m
     "TURNED": (0.0, 900.0),  # degrees
@@ -61,6 +46,7 @@ BOUNDS: dict[str, tuple[float, float]] = {
     "LENGTH": (20.0, 620.0),  # m
     "SIGHT": (0.0, 200.0),  # m
 }
+BOUNDS = {**of_competition.bounds, **OWN_BOUNDS}
 """The range of the feature map along each axis; values beyond this range belong to the outermost cell."""
 
 DEGREES = (0.0, 180.0)  # the range of the feature map along the axes DEGREES_1, DEGREES_2, and so on
@@ -93,32 +79,6 @@ def behaviour_of_samples(points: Array, heading: Array, brief: Brief | None) -> 
     return {name: round(float(value), DECIMALS) for name, value in out.items()}
 
 
-def curvature_of_lane(curvature: Array, middle: Array) -> Array:
-    """Returns the curvature in 1/m of the middle of the driven lane, from that of the centre line and the
-    offset of the middle in metres, positive to the left."""
-    return curvature / np.maximum(1 - middle * curvature, TIGHTEST)
-
-
-def among_others(verdict: Verdict) -> dict[str, float]:
-    """Returns the features of a drive with others on the road, by name."""
-    counts, first = verdict.counts, verdict.first_contact
-    names = {
-        "COLLISIONS": "collision",
-        "NEAR_MISSES": "near miss",
-        "BLOCKED": "blocked",
-        "SPEEDING": "speeding",
-    }
-    out = {name: float(counts.get(kind, 0)) for name, kind in names.items()}
-    measured = {"GAP": verdict.least_gap, "TTC": verdict.least_ttc}
-    out |= {name: found for name, found in measured.items() if found is not None}
-    if first is not None:
-        out |= {
-            "AT_FAULT": float(bool(verdict.is_at_fault)),
-            "IMPACT": round(3.6 * first.impact_speed, DECIMALS),
-        }
-    return out
-
-
 def turns_asked(brief: Brief | None) -> int:
     """Returns the number of turns that the Brief states, which get features such as RADIUS_1; 0 if it states
     none, a range, or more than six."""
@@ -140,14 +100,14 @@ def bounds_of(axis: str) -> tuple[float, float]:
     return BOUNDS[axis]
 
 
-def cell_of(features: Mapping[str, float], axes: Sequence[str], cells: int) -> tuple[int, ...] | None:
-    """Returns the cell of the feature map to which a test belongs, as one index per axis; None if
-    ``features`` lacks one of the axes. ``cells`` is the number of cells along each axis."""
-    if any(axis not in features for axis in axes):
-        return None
-    place = []
-    for axis in axes:
-        low, high = bounds_of(axis)
-        share = (features[axis] - low) / (high - low)
-        place.append(int(min(max(share * cells, 0), cells - 1)))
-    return tuple(place)
+def _numbers(run: Run) -> dict[str, float]:
+    assert run.road is not None
+    found = behaviour_of(run.road, run.brief)
+    if run.world.has_ground and run.road.has_way:
+        from roadgpt.network.sight import sight_along
+
+        found["SIGHT"] = round(min(float(sight_along(run.road, run.world)[1].min()), run.road.length), 1)
+    return found
+
+
+columns = Columns(_numbers, bounds=OWN_BOUNDS)

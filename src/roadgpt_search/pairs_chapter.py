@@ -1,0 +1,88 @@
+"""The chapter of reports on boundary pairs: similar roads on either side of the boundary of failure."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from roadgpt.campaign.model import Result
+from roadgpt.campaign.record import Record
+from roadgpt.design.elements import elements_of
+from roadgpt.errors import command_line
+from roadgpt.report.campaign_report import again
+from roadgpt.report.chapters import Chapter
+from roadgpt.report.chapters.wording import decimal, row
+from roadgpt.report.page.model import Block, Section, Table, TableCell, cell
+from roadgpt_search.boundary_pairs import BoundaryPair, pairs_of, weightiest
+
+MOST_CELLS = 12  # that are searched
+NAMED = 30  # pairs that are shown for a campaign with one cell
+MOST_SEARCHED = 1000  # tests of all cells in which pairs are searched, those between two others first
+FEW_PAIRS = 10  # pairs that are shown per cell for a campaign with several cells
+NEAR = (
+    "tests.number IN (SELECT number FROM tests JOIN details USING (cell, number) WHERE tests.cell = ? "
+    "AND outcome IN ('PASS', 'FAIL') ORDER BY origin LIKE 'between %' DESC, number DESC LIMIT ?)"
+)
+EXPLAINED = (
+    "Distance: the root of the summed squares of all differences, where 10 m of a straight, 2 m of a radius "
+    "or a clothoid, 10 degrees of a turn and 1 % of a grade are 1 each. Each road stands in one pair."
+)
+
+
+def chapter(record: Record) -> Chapter | None:
+    """Returns the chapter on the pairs in cells that search for the boundary; None if there are none."""
+    goals = {each.name: each.goal for each in record.cells()}
+    begun = [name for name in goals if goals[name] == "boundary" and next(record.results(name), None)]
+    pairs = nearest(record, begun[:MOST_CELLS])
+    if not pairs:
+        return None
+    section = Section("At the boundary", boundary(record.folder, pairs))
+    return Chapter(section, (nearest_sentence(pairs),))
+
+
+Side = tuple[str, BoundaryPair, Result, Result]
+"""Two similar roads from one campaign cell (one combination of prompt, designer, driver and so on): the cell,
+the pair, the test that passed and the test that failed."""
+
+
+def nearest(record: Record, cells: Sequence[str]) -> list[Side]:
+    """Returns the pairs of a passed and a failed test that differ least, as
+    ``boundary_pairs`` measures it: up to NAMED for one cell, otherwise up to FEW_PAIRS per cell."""
+    out = []
+    for name in cells:
+        some = (name, MOST_SEARCHED // len(cells))
+        results = {result.number: result for result in record.results(name, NEAR, some)}
+        for pair in pairs_of([*results.values()])[: NAMED if len(cells) == 1 else FEW_PAIRS]:
+            out.append((name, pair, results[pair.kept], results[pair.lost]))
+    return out
+
+
+def nearest_sentence(pairs: Sequence[Side]) -> str:
+    """Returns the sentence for the summary on the pair of roads that differ least."""
+    cell_name, best, *_ = min(pairs, key=lambda side: side[1].distance)
+    return (
+        f"Nearest to each other on either side of the boundary are tests {cell_name}/{best.kept}, where "
+        f"the car kept its lane, and {cell_name}/{best.lost}, where it did not: "
+        f"their distance, as told below, is {best.distance:.2f}."
+    )
+
+
+def boundary(folder: Path, pairs: Sequence[Side]) -> list[Block]:
+    """Returns a table of pairs of roads, with the largest difference of each pair."""
+    rows = [_row(folder, *side) for side in pairs]
+    name, first, *_ = pairs[0]
+    names = [f"{folder}/{name}/{at}" for at in (first.kept, first.lost)]
+    note = f"{EXPLAINED} To see a pair: {command_line('view', *names)}"
+    heads = ["kept", "margin, m", "lost", "at, m", "distance", "what differs most, kept then lost"]
+    return [Table("pairs", "Nearest pairs of a road that was kept and one that was lost", heads, rows, note)]
+
+
+def _row(folder: Path, name: str, pair: BoundaryPair, kept: Result, lost: Result) -> list[TableCell]:
+    assert kept.plain_design is not None
+    assert lost.plain_design is not None
+    return row(
+        cell(f"{name}/{pair.kept}", href=again(folder, name, pair.kept)),
+        decimal(kept.margin),
+        cell(f"{name}/{pair.lost}", href=again(folder, name, pair.lost)),
+        decimal(lost.at_s, 0),
+        decimal(pair.distance),
+        weightiest(elements_of(kept.plain_design.segments), elements_of(lost.plain_design.segments)),
+    )
