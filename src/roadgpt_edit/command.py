@@ -55,6 +55,7 @@ def edit(
 
     The exit status is 2 if the words cannot be read, refer to something that is not on the road, or ask for
     a road that cannot be valid. In these cases nothing is written."""
+    from roadgpt.brief import SURE
     from roadgpt.brief.change.plan import read_change_plan
     from roadgpt.chat import Meter, counting
     from roadgpt.cli.roads import made, roads_named
@@ -101,18 +102,12 @@ def edit(
     place = write_edit(new, old, said, edited.changes, run, folder, options.drawing_of(pictures))
     row = row_of(new, str(folder / test_name(1)), name=test_name(1))
     if as_json:
-        _print_json(edited, said, run, row)
+        told = {"request": said, "of": run, "changes": edited.changes, "unused": edited.unused}
+        sure = {"confidence": edited.confidence, "is_sure": edited.confidence >= SURE, "other": edited.other}
+        print(json.dumps({**told, **sure, **json.loads(row.to_json())}, ensure_ascii=False))
     else:
         _print_edit(screen, edited, row, place, pictures)
     return place
-
-
-def _print_json(edited: "Edited", words: str, of: str, row: "Row") -> None:
-    from roadgpt.brief import SURE
-
-    told = {"request": words, "of": of, "changes": edited.changes, "unused": edited.unused}
-    sure = {"confidence": edited.confidence, "is_sure": edited.confidence >= SURE, "other": edited.other}
-    print(json.dumps({**told, **sure, **json.loads(row.to_json())}, ensure_ascii=False))
 
 
 def _print_edit(

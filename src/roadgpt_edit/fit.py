@@ -233,14 +233,10 @@ def graded(design: Design, elements: RoadElements, world: World, before: Design 
 
 
 def _with_new_parabolas(
-    segments: tuple[Segment, ...],
-    before: Sequence[Segment],
-    pace: vertical.Pace,
-    ease: float,
-    is_widened: bool,
+    segments: tuple[Segment, ...], before: Sequence[Segment], pace: vertical.Pace, ease: float, widens: bool
 ) -> tuple[Segment, ...]:
     """Returns segments with new parabolas wherever two grades meet that did not meet ``before`` a change. If
-    ``is_widened``, unchanged segments get parabolas as well, and all radii that are smaller than the rule
+    ``widens``, unchanged segments get parabolas as well, and all radii that are smaller than the rule
     allows are increased."""
     known = {(a.incline, b.incline, b.vertical_radius) for a, b in pairwise(before)}
     opened = frozenset(
@@ -248,10 +244,10 @@ def _with_new_parabolas(
         for i, (a, b) in enumerate(pairwise(segments), 1)
         if a.incline != b.incline
         and (a.incline, b.incline, b.vertical_radius) not in known
-        and (is_widened or b not in before)
+        and (widens or b not in before)
     )
     segments = vertical.joined(segments, pace, ease, opened) if opened else segments
-    return vertical.widened(segments, pace) if is_widened else segments
+    return vertical.widened(segments, pace) if widens else segments
 
 
 def _slopes_of_edit(elements: RoadElements, limit: Range) -> _Slopes:

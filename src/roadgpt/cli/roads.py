@@ -64,8 +64,7 @@ def roads_named(
 
 
 def kind_of(file: str) -> Literal["road", "runs", "campaign"]:
-    """Returns whether a name is of a single run or road file, of a folder of runs or of a campaign, or in
-    one."""
+    """Returns whether a name is of a road or single run, of runs, or of tests of a campaign."""
     from roadgpt.campaign.folder_record import is_store
     from roadgpt.campaign.selection import selection_of
 
