@@ -16,6 +16,13 @@ from roadgpt.campaign.record import Record
 from roadgpt.campaign.single_test import FinishedTest, seed_of_driver
 
 
+def computes(text: str) -> bool:
+    """Whether a spreadsheet would compute a text; a sign alone begins a number, or a list in prose."""
+    if text[:1] in ("+", "-"):
+        return any(mark in text.split("\n")[0] for mark in "(|!")
+    return text[:1] in ("=", "@")
+
+
 def slowly(record: Record) -> str:
     """results.csv by Python's own csv module, from whole results."""
     features = record.feature_names()
@@ -27,7 +34,8 @@ def slowly(record: Record) -> str:
         margin = None if one.cause == "collision" else one.margin
         came = (one.outcome, one.cause, one.side, one.length, margin, one.max_oob, one.beyond, one.at_s)
         known = [one.own_share, one.handed_to, one.description, *map(one.features.get, features)]
-        table.writerow([cell, one.number, *asked, *came, *known])
+        line = [cell, one.number, *asked, *came, *known]
+        table.writerow(f"'{each}" if isinstance(each, str) and computes(each) else each for each in line)
     return text.getvalue()
 
 
