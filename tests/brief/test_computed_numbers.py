@@ -31,6 +31,18 @@ def test_a_figure_told_by_another_one_is_written_as_its_computation(
         state.push(token)
 
 
+@pytest.mark.parametrize(("text", "line"), rows(__file__, "shares"))
+def test_an_angle_told_in_right_angles_or_circles_is_written_in_degrees(text: str, line: str) -> None:
+    """The degrees are a person's: 90 for a right angle, 360 for a circle. None is a figure of the text."""
+    said = slotted(text)
+    found = tokens_of(line, said.slots, Compared.of(said.text))
+    assert found is not None
+    state = automaton(said)
+    for token in [*found, "<end>"]:
+        state.push(token)
+    assert plan_of(found, said.slots) == line
+
+
 def test_without_words_that_compare_nothing_is_computed() -> None:
     said = slotted("a straight of 40 m, a left of 60 degrees, then a straight of 80 m")
     assert Compared.of("a left and a right") == Compared(plain=frozenset())

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roadgpt.brief import AnotherRoadError, check, normal, read, reader_of, sentence
+from roadgpt.brief import AnotherRoadError, TooMuchError, check, normal, read, reader_of, sentence
 from roadgpt.brief.model import Brief, exactly
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model import WEIGHTS, ModelReader
@@ -66,6 +66,23 @@ def test_a_contradiction_is_answered_with_the_plan_that_may_be_meant() -> None:
     assert read_plan(refusal.value.plan).turns != exactly(0)
     assert plan(refusal.value.brief) == refusal.value.plan
     assert read(refusal.value.plan, "plan").clauses == refusal.value.brief.clauses
+
+
+@pytest.mark.parametrize(
+    ("words", "meant"),
+    [
+        ("13 turns", "turn x13"),
+        ("40 very sharp left turns", "turn x40 left sharp"),
+        ("fifteen left turns and then 18 right turns", "turn x15 left; turn x18 right"),
+        ("9 left turns, then 16 turns", "turn x9 left; turn x16"),
+        ("25 turns in 900 m", "turn x25 | len=900"),
+    ],
+)
+def test_more_turns_than_the_networks_have_learnt_are_counted(words: str, meant: str) -> None:
+    with pytest.raises(TooMuchError, match="no more than 12 turns") as refusal:
+        READER.read(words)
+    assert refusal.value.brief is not None
+    assert plan(refusal.value.brief) == meant
 
 
 def test_the_same_words_are_read_the_same_way_twice() -> None:

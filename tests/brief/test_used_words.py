@@ -3,11 +3,19 @@
 from collections.abc import Sequence
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
-from roadgpt.brief.readers.model.trained import DOUBT, Trained, confidence, passes_over
+from roadgpt.brief.readers.model.trained import (
+    DOUBT,
+    ScoredPlan,
+    Trained,
+    confidence,
+    features,
+    passes_over,
+)
 
 FILLERS = frozenset(("a", "road", "with", "and", "the"))
 REASONS = {"up": {"uphill", "climbing"}, "turn": {"turns", "bends"}, "3": {"3"}}
@@ -63,6 +71,19 @@ def test_a_number_that_changes_nothing_is_noticed_even_if_there_are_more_than_fi
     assert [word for word in found if word[0].isdecimal()] == [
         f"{41 + n} m" for n in range(len(text.slots), 15)
     ]
+
+
+@pytest.mark.parametrize(
+    ("tokens", "lacked"), [("turn x 3", 2), ("turn x 3 r= [2]", 1), ("turn x 3 r= [2] | len= [1]", 0)]
+)
+def test_the_inputs_of_the_confidence_are_counts(tokens: str, lacked: int) -> None:
+    """Counted by hand: each count is the odds, where it alone has a weight, and that is 1."""
+    text = slotted("3 turns in 300 m, of 40 m radius")  # 3 turns in [1] metres , of [2] metres radius
+    written = ScoredPlan((*tokens.split(),), "", 0.0, (-0.25, -1.5, -0.25))
+    odds = {"words": 10, "tokens": tokens.count(" ") + 1, "numbers": 1 + lacked, "all": 2.03, "worst": 1.53}
+    for name, expected in odds.items():
+        sure = confidence({"bias": 0.0, name: 1.0}, features(written, text), (), text)
+        assert sure == pytest.approx(expected / (1 + expected), abs=6e-4), name
 
 
 @given(st.floats(-20, 20))

@@ -47,6 +47,15 @@ def jacksboro(row: int, column: int) -> Relief:
         return relief(data["elevation"][row : row + 21, column : column + 21], 90.0)
 
 
+def steep_garden(seed: int) -> tuple[Relief, Place, Place]:
+    """200 m of steep waves, and two places on them."""
+    rng, x = np.random.default_rng(seed), np.arange(0.0, 201.0, 10.0)
+    waves = rng.uniform((2.0, -0.06, -0.06, -3.0), (14.0, 0.06, 0.06, 3.0), (4, 4))
+    heights = sum(high * np.sin(east * x + north * x[:, None] + at) for high, east, north, at in waves)
+    start, end = map(tuple, rng.uniform(20.0, 180.0, (2, 2)).tolist())
+    return relief(100.0 + heights), start, end
+
+
 def places(seed: int, count: int = 10) -> list[tuple[Place, Place]]:
     """Pairs of places that are 300 to 700 m apart."""
     rng, found = np.random.default_rng(seed), list[tuple[Place, Place]]()
@@ -118,17 +127,18 @@ def test_straight_up_a_slope_of_20_percent_it_winds(steepest: float, radius: flo
 
 
 def test_a_wall_without_a_way_is_refused_with_the_place_and_the_limits() -> None:
+    """The place is where a car from the start would stand, though from the end one would come nearer."""
     with pytest.raises(UsageError, match=r"no road of 8 % or less with bends of 40 m") as caught:
-        way_between(cliffs(), (200.0, 500.0), (800.0, 500.0), 0.08, 40.0)
+        way_between(cliffs(), (300.0, 500.0), (900.0, 500.0), 0.08, 40.0)
     said = str(caught.value)
     assert "\n" not in said
     assert f"up to {DEEPEST:g} m" in said
-    assert "from (200, 500) to (800, 500)" in said
+    assert "from (300, 500) to (900, 500)" in said
     found = re.search(r"ends at \((\d+), (\d+)\), (\d+) m before it", said)
     assert found is not None
     x, y, left = map(float, found.groups())
     assert 400 < x < 490
-    assert math.dist((x, y), (800, 500)) == pytest.approx(left, abs=1.5)
+    assert math.dist((x, y), (900, 500)) == pytest.approx(left, abs=1.5)
 
 
 @pytest.mark.parametrize("gap", [(700.0, 860.0), (100.0, 300.0)])
@@ -180,6 +190,22 @@ def test_the_same_call_gives_the_same_way_and_the_way_back_is_found_too() -> Non
     back = way_between(land, end, start, 0.10, 30.0)
     assert_obeys(back, land, end, start, 0.10, 30.0)
     assert back.plan.length == pytest.approx(one.plan.length, rel=0.5)
+
+
+@pytest.mark.parametrize(
+    "seed", [206, 268, 165, 362, 28, 534, 17, 436, 567, 600, 173, 227, 4, 330, 1128, 2243]
+)
+def test_each_try_finds_ways_that_no_other_one_finds(seed: int) -> None:
+    """Two gardens for each of the tries, in their order: without it there is no way through them."""
+    land, start, end = steep_garden(seed)
+    assert_obeys(way_between(land, start, end, 0.10, 15.0), land, start, end, 0.10, 15.0)
+
+
+@pytest.mark.parametrize("seed", [29, 79, 120, 499, 509])
+def test_the_last_arc_keeps_clear_of_the_way_before_it(seed: int) -> None:
+    """In these gardens the nearest arc to the end crosses the way, or lies on it; another one does not."""
+    land, start, end = steep_garden(seed)
+    assert_obeys(way_between(land, start, end, 0.10, 15.0), land, start, end, 0.10, 15.0)
 
 
 def least_area(land: Array, step: float, steepest: float) -> float:

@@ -145,8 +145,7 @@ def searched(
         state[count] = x0, y0, 2.0 * math.pi * k / DIRECTIONS, z0, 0.0, 0.0
         heapq.heappush(queue, (0.0, count))
         count += 1
-    near = (x0, y0, math.hypot(x1 - x0, y1 - y0))
-    last = -1
+    near, last = (x0, y0, math.hypot(x1 - x0, y1 - y0)), -1
     while len(queue) > 0 and count < MOST_STATES - len(SHARES) - 1:
         _, n = heapq.heappop(queue)
         x, y, heading, z, cost, _bend = state[n]
@@ -162,7 +161,10 @@ def searched(
             aim = math.atan2(math.sin(aim), math.cos(aim))
             bend = 2.0 * math.sin(aim) / max(away, 1e-9)
             arc = away if abs(aim) < 1e-6 else away * aim / math.sin(aim)
-            if abs(bend) <= tightest and abs(aim) < 1.2 and abs(z1 - z) <= steepest * arc:
+            bulge = math.tan(aim / 2.0)
+            u, v = (x + x1 + bulge * (y1 - y)) / 2.0, (y + y1 - bulge * (x1 - x)) / 2.0  # half-way
+            is_clear = not _meets(state, parent, n, u, v) and not _meets(state, parent, n, x1, y1)
+            if is_clear and abs(bend) <= tightest and abs(aim) < 1.2 and abs(z1 - z) <= steepest * arc:
                 state[count] = x1, y1, heading + bend * arc, z1, cost, bend
                 parent[count], length[count] = n, arc
                 last = count
@@ -203,13 +205,11 @@ def searched(
                 left = max(math.hypot(x1 - u, y1 - v), abs(z1 - height) / steepest)
                 heapq.heappush(queue, (whole + left, count))
                 count += 1
-    moves = 0
-    n = last
+    moves, n = 0, last
     while n >= 0 and parent[n] >= 0:
         moves += 1
         n = parent[n]
-    bends, lengths = np.empty(moves), np.empty(moves)
-    n = last
+    bends, lengths, n = np.empty(moves), np.empty(moves), last
     for k in range(moves - 1, -1, -1):
         bends[k], lengths[k] = state[n, 5], length[n]
         n = parent[n]
