@@ -60,6 +60,22 @@ def test_a_scene_is_said_in_plain_words(scene: Scene) -> None:
         assert f"{number:.4f}".rstrip("0").rstrip(".") in said
 
 
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("ego lane=1 v=50", "the tested car starts at 50 km/h in lane 1 from the kerb"),
+        ("ego lane=2 left", "the tested car starts in lane 2 from the kerb; it goes left at the junction"),
+        ("ego lane=-1", "the tested car starts in the innermost lane"),
+        ("ego lane=-2", "the tested car starts in lane 2 from the inside"),
+        ("parked left; parked right", "cars parked on both sides"),
+        ("parked right; wet", "cars parked on the right; on a wet road"),
+        ("low_sun; mountain", "a low sun ahead; mountain land"),
+    ],
+)
+def test_the_parts_of_a_scene_are_said_by_name(line: str, said: str) -> None:
+    assert scene_text(read_scene(line)) == said
+
+
 WORDS = (
     *("car", "truck x2", "adult", "cones", "ahead", "lane left", "crossing", "parked", "oncoming", ":", ","),
     *(";", "&&", "brake 6", "cut_in", "cross", "gap=30", "v=50", "ttc=2", "after turn 1", "with car 1 brake"),

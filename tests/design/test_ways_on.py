@@ -36,6 +36,20 @@ def test_the_exit_that_leads_back_is_the_last() -> None:
         draft(read_plan("roundabout back exit=2 arms=4"), WORLD, seed=1)
 
 
+@pytest.mark.parametrize(
+    ("plan", "ways"),
+    [
+        ("crossroads straight in=right", {"left", "straight"}),
+        ("crossroads straight in=left", {"right", "straight"}),
+        ("crossroads right in=left out=straight", {"right", "straight"}),
+        ("crossroads straight out=left", {"left", "right", "straight"}),
+        ("t_junction left in=right", {"left"}),
+    ],
+)
+def test_nobody_leaves_by_an_arm_that_leads_to_the_junction(plan: str, ways: set[str]) -> None:
+    assert {*measured(plan, 1).ways_on} == ways
+
+
 @pytest.mark.parametrize("take", ["left", "right"])
 def test_the_road_ends_at_a_t_junction_where_one_turns(take: str) -> None:
     assert all({*measured(f"t_junction {take}", seed).sides} == {"left", "right"} for seed in range(8))

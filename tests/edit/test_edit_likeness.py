@@ -1,5 +1,7 @@
 """Changes that take a value from another place, or name the stations between which a slope changes."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -54,6 +56,20 @@ def test_an_angle_is_taken_from_another_turn(plan: str) -> None:
     after = turns(edited(LISTED, plan).design)
     changed = after[1 if "right" in plan else 2]
     assert changed.degrees == pytest.approx(turns(LISTED)[0].degrees, abs=1.5)
+
+
+@pytest.mark.parametrize("place", ["road: length", "straight 1: length", "turn 2: angle", "turn 2: radius"])
+def test_slightly_and_much_are_less_and_more_than_the_plain_word(place: str) -> None:
+    def of(design: Design) -> float:
+        turn = turns(design)[1]
+        return {"road": build(design).length, "stra": lengths(design)[0]}.get(
+            place[:4], turn.degrees if "angle" in place else turn.radius
+        )
+
+    words = ("much less", "less", "slightly less", "slightly more", "more", "much more")
+    found = [of(edited(LISTED, f"{place} {word}").design) for word in words]
+    found.insert(3, of(LISTED))
+    assert all(other > 1.01 * one for one, other in pairwise(found)), found
 
 
 def test_no_longer_than_another_changes_only_what_is_longer() -> None:

@@ -17,6 +17,7 @@ from roadgpt.cli.screen import COLOURS
 from roadgpt.drive import COLUMNS, Box, Columns, Drive
 from roadgpt.errors import RoadGPTError
 from roadgpt.report.canvas import OUTCOMES
+from roadgpt.report.chapters.roads import BOUNDS, MAPS, feature_map
 from roadgpt.report.overview import Thumbnail
 from roadgpt.report.page import STYLE, csv_of, html_of, latex_of, write
 from roadgpt.report.page.charts import AxisRange, Share, bars, forest, heat, is_map, lines, palette
@@ -283,6 +284,8 @@ def test_a_map_that_shows_nothing_is_none(filled: list[float], is_one: bool) -> 
     values = np.zeros(25)
     values[: len(filled)] = filled
     assert is_map(values.reshape(5, 5)) is is_one
+    figures = feature_map("map", values.reshape(5, 5), MAPS[0], BOUNDS, "tests", "Tests in {}.")
+    assert len(figures) == is_one
 
 
 def test_the_place_of_a_failure_is_to_scale_and_the_way_there_leads_up() -> None:
