@@ -7,10 +7,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import shapely
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 
 from roadgpt import plugins
 from roadgpt.drive import Command, Drive, View, simulate
 from roadgpt.drive.keeping_distance import KeepingDistance
+from roadgpt.drive.path_ahead import look_ahead
 from roadgpt.network import is_route
 from roadgpt.road import Limits, Road, World
 from roadgpt.run import Run, Setup, perform
@@ -31,6 +34,35 @@ DRIVERS = ("beamng_like", "lane_centring", "pure_pursuit", "reference")
 def alone(driver: str) -> Drive:
     """A drive with somebody who is far away, so that the car rolls at the start."""
     return simulate(ROAD, WORLD, driver, replay=tracks(1.0, barrier=("barrier", straight(450, -90, 0, 0))))
+
+
+def is_between(gap: float, left: float, v: float, walks: float) -> bool:
+    """Whether an adult, ``left`` metres beside a strip of 2.26 m, is in it while the car of 5 m comes to
+    it and passes, or within half a second of that: every centisecond, one after another."""
+    t, half = np.arange(0.0, 30.0, 0.01), SIZES["adult"].width / 2
+    y = 1.13 + left + half - walks * t
+    front = v * t - gap
+    there, here = np.abs(y) < 1.13 + half, (front >= 0) & (front <= 5.0 + 2 * half)
+    times, others = t[there], t[here]
+    return bool(times[0] <= others[-1] + 0.5 and others[0] <= times[-1] + 0.5)
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.floats(3, 45), st.floats(0.2, 4), st.floats(4, 20), st.floats(1, 2.5), st.booleans())
+def test_one_who_walks_into_the_path_counts_only_if_both_come_there_at_a_time(
+    gap: float, left: float, v: float, walks: float, is_right: bool
+) -> None:
+    assume(left < 3 * walks)
+    known = {is_between(gap * a, left, v * b, walks) for a in (0.94, 1.06) for b in (0.97, 1.03)}
+    assume(len(known) == 1)
+    side, (length, width) = -1 if is_right else 1, (SIZES["adult"].width,) * 2
+    x = np.arange(0.0, 100.0, 0.5)
+    path = np.column_stack([x, np.zeros((len(x), 2))])
+    place = (1.13 + left + width / 2) * side
+    adult = np.array([[10 + FRONT + gap + length / 2, place, -side * np.pi / 2, walks, length, width, 0.0]])
+    found = look_ahead(path, 10.0, adult, np.array([10.0, 0, 0, v, FRONT]), np.array([1.5, 1.5, 2.0]))[0]
+    assert np.isfinite(found[0]) == known.pop()
+    assert found[0] in (np.inf, pytest.approx(gap, abs=1e-6))
 
 
 def gaps(drive: Drive, others: Tracks, kind: str) -> np.ndarray:

@@ -13,7 +13,7 @@ from matplotlib.transforms import Bbox
 
 from roadgpt.errors import UsageError
 from roadgpt.report import overview
-from roadgpt.report.overview import Thumbnail, page_of, pages
+from roadgpt.report.overview import Thumbnail, _thumbnail, page_of, pages
 from roadgpt.road import World
 from roadgpt.run import Request, Setup
 from roadgpt.run.folder import CARD, Card
@@ -34,6 +34,18 @@ def test_file(number: int) -> dict[str, object]:
 
 
 test_file.__test__ = False  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(("outcome", "share"), [("PASS", 0.3), ("FAIL", 0.9), ("ERROR", 0.9)])
+def test_at_the_goal_a_car_that_passed_is_no_longer_outside(
+    outcome: str, share: float, tmp_path: Path
+) -> None:
+    """The competition's records end with one beyond the end of the road; without another one, none counts."""
+    records = [[0.1 * n, [100.0, 90.0, 0.0], *[0] * 14, at] for n, at in enumerate((0.0, 0.3, 0.1, 0.9))]
+    test = {"id": 1, "is_valid": True, "interpolated_points": [[0, 0], [9, 9]], "test_outcome": outcome}
+    for name, data, told in (("all", records, share), ("one", records[-1:], None if share < 0.9 else share)):
+        (tmp_path / f"{name}.json").write_text(json.dumps({**test, "execution_data": data}))
+        assert _thumbnail(tmp_path / f"{name}.json").share == told
 
 
 def campaign(folder: Path, count: int) -> None:
