@@ -11,7 +11,14 @@ from hypothesis import strategies as st
 from road_parts import road_of
 from roadgpt.drive.sampled_road import locate_on, sample_road
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, tables
-from roadgpt.drive.simulators.mujoco.dynamics import esc_torques, tyre_forces
+from roadgpt.drive.simulators.mujoco.dynamics import (
+    AT,
+    WHEEL_STATE,
+    _ground_contact,
+    esc_torques,
+    tyre_forces,
+)
+from roadgpt.drive.simulators.mujoco.vehicle import plane
 from roadgpt.export.ego import CAR
 
 TYRE = ETK_LIKE.front.tyre
@@ -164,3 +171,15 @@ def test_files_speak_of_the_car_that_drives() -> None:
         driven.max_steer_angle,
     )
     assert told.wheel == 2 * driven.unloaded_radius
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(-0.3, 0.3), st.sampled_from([1, -1]))
+def test_a_wheel_at_the_rim_has_the_ground_that_is_under_its_tyre(beyond, side):
+    """Counted over 1,001 strips of the tyre, on a road from 4 m left to 3 m right."""
+    car, wheel = tables(ETK_LIKE)[0][0], np.zeros(WHEEL_STATE)
+    ground = plane()._ground._replace(rims=np.array([[4.0, -3.0]] * 3))
+    wheel[AT], y = ground.sampled.length / 2, (4.0 + beyond if side == 1 else -3.0 - beyond)
+    strips = y + np.linspace(-0.5, 0.5, 1001) * ETK_LIKE.tyre_width
+    share = np.mean((strips < 4.0) & (strips > -3.0))
+    assert _ground_contact(car, ground, wheel, np.array([0.0, y, 0.3]))[2] == pytest.approx(share, abs=0.002)

@@ -505,6 +505,15 @@ def test_nobody_accelerates_more_than_friction_and_grade_allow_and_that_is_said(
     assert all(" sideways" in said and not prescribed for said, prescribed in limited_dry(scene))
 
 
+@pytest.mark.parametrize(("place", "most", "friction"), [(20, "2.0", "0.2"), (400, "4.9", "0.5")])
+def test_friction_is_that_of_the_place_where_somebody_brakes(place: int, most: str, friction: str) -> None:
+    scene = f"ego v=50; car ahead gap=40 v=50: brake 8 time=3; slippery s={place} len=300 mu=0.2"
+    others = rehearsed(STRAIGHT, WORLD.changed(friction=0.5, scene=scene), 1)
+    assert others is not None
+    told = f"car 1 brakes with at most {most} m/s2, not 8.0: friction is {friction}"
+    assert [*others.limited] == [told]
+
+
 def test_a_scenario_that_prescribes_more_than_the_road_gives_is_invalid_before_driving() -> None:
     for friction, outcome in ((0.35, "INVALID"), (0.45, "FAIL")):
         setup = Setup(driver="robot", reader="plan", scenario="ncap:CCRb")
