@@ -9,6 +9,7 @@ share of failures among the 20 that look hardest; the mean over 8 ways to part t
 """
 
 import argparse
+import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
@@ -28,6 +29,7 @@ from roadgpt_search.variation import VariationContext, VariationTask, candidate_
 WORLD = World(site=Site(map_size=200.0, z_floor=0.0), limits=Limits(oob_tolerance=0.85))
 SPLITS = 8
 HARDEST = 20
+LEARNT = (20, 50, 100, 200)  # roads, of which one half at most
 Predict = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
@@ -77,6 +79,8 @@ def auc(score: np.ndarray, failed: np.ndarray) -> float:
 def main(roads: int, workers: int, wet: bool) -> None:
     with ProcessPoolExecutor(workers) as pool:
         found = [one for one in pool.map(partial(driven, wet=wet), range(roads), chunksize=5) if one]
+    if len(found) < 2 * LEARNT[0]:
+        sys.exit(f"{len(found)} of {roads} drafts became roads; the table needs {2 * LEARNT[0]}")
     signs = np.array([one[0] for one in found])
     margins = np.array([one[1] for one in found])
     failed = np.array([one[2] for one in found])
@@ -84,7 +88,7 @@ def main(roads: int, workers: int, wet: bool) -> None:
     print(f"{len(found)} roads, {100 * failed.mean():.1f} % failed\n")
     print(f"| learnt from | way | rho of margins | AUC of failures | failures among the {HARDEST} | ms |")
     print("|---|---|---|---|---|---|")
-    for n in (20, 50, 100, 200):
+    for n in LEARNT:
         if n > len(found) / 2:
             break
         for name, way in WAYS.items():
