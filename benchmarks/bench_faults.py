@@ -27,10 +27,10 @@ from typing import NamedTuple
 import numpy as np
 
 from roadgpt.campaign.executors.processes import unordered_map
-from roadgpt.campaign.faults.fault import Fault, faults_in
-from roadgpt.campaign.faults.remedy import Removed, remedies_of, stored_remedies
 from roadgpt.campaign.folder_record import kept_run
 from roadgpt.campaign.model import NumberedTest
+from roadgpt_search.faults.fault import Fault, faults_in
+from roadgpt_search.faults.remedy import Removed, remedies_of, stored_remedies
 
 DRIVERS = ("beamng_like", "lane_centring")
 CONDITIONS: dict[str, tuple[str, ...]] = {

@@ -91,7 +91,7 @@ def film(
     begin, length = seconds or (0.0, None)
     settings = Settings(*size, fps, begin, length)
     choice, world = options.choice_of(rest), options.world_of(rest)
-    if is_all or choice in ("failures", "faults"):
+    if is_all or choice not in (None, "worst"):
         for each, film in _films(files, choice, view, out):
             run = roads.run_of(each, world, geometry)
             if run.road is None:

@@ -32,6 +32,7 @@ from roadgpt.run import Run
 DRIVEN = ("STD_SA", "MEAN_LP", "MAX_LP", "SIGHT")  # the features that a sketch of a road has not
 DIRECTIONS = 36  # of 10 degrees each
 WIDEST = 1000.0  # m; larger radii count as this radius
+TIGHTEST = 0.2  # 1 + 2k is kept above this
 MOST_TURNS = 6  # that have features of their own
 DECIMALS = 6
 
@@ -77,6 +78,12 @@ def behaviour_of_samples(points: Array, heading: Array, brief: Brief | None) -> 
         out[f"RADIUS_{number}"] = min(turn.radius, WIDEST)
         out[f"DEGREES_{number}"] = turn.degrees
     return {name: round(float(value), DECIMALS) for name, value in out.items()}
+
+
+def curvature_of_lane(curvature: Array, middle: Array) -> Array:
+    """Returns the curvature in 1/m of the middle of the driven lane, from that of the centre line and the
+    offset of the middle in metres, positive to the left."""
+    return curvature / np.maximum(1 - middle * curvature, TIGHTEST)
 
 
 def turns_asked(brief: Brief | None) -> int:

@@ -10,7 +10,7 @@ from roadgpt.errors import command_line
 from roadgpt.report.campaign_report import again
 from roadgpt.report.chapters import Chapter
 from roadgpt.report.chapters.wording import decimal, row
-from roadgpt.report.page.model import Block, Section, Table, TableCell, cell
+from roadgpt.report.page.model import Section, Table, TableCell, cell
 from roadgpt_search.boundary_pairs import BoundaryPair, pairs_of, weightiest
 
 MOST_CELLS = 12  # that are searched
@@ -27,6 +27,11 @@ EXPLAINED = (
 )
 
 
+Side = tuple[str, BoundaryPair, Result, Result]
+"""Two similar roads from one campaign cell (one combination of prompt, designer, driver and so on): the cell,
+the pair, the test that passed and the test that failed."""
+
+
 def chapter(record: Record) -> Chapter | None:
     """Returns the chapter on the pairs in cells that search for the boundary; None if there are none."""
     goals = {each.name: each.goal for each in record.cells()}
@@ -34,13 +39,13 @@ def chapter(record: Record) -> Chapter | None:
     pairs = nearest(record, begun[:MOST_CELLS])
     if not pairs:
         return None
-    section = Section("At the boundary", boundary(record.folder, pairs))
-    return Chapter(section, (nearest_sentence(pairs),))
-
-
-Side = tuple[str, BoundaryPair, Result, Result]
-"""Two similar roads from one campaign cell (one combination of prompt, designer, driver and so on): the cell,
-the pair, the test that passed and the test that failed."""
+    name, best, *_ = min(pairs, key=lambda side: side[1].distance)
+    said = (
+        f"Nearest to each other on either side of the boundary are tests {name}/{best.kept}, where the car "
+        f"kept its lane, and {name}/{best.lost}, where it did not: their distance, as told below, is "
+        f"{best.distance:.2f}."
+    )
+    return Chapter(Section("At the boundary", [boundary(record.folder, pairs)]), (said,))
 
 
 def nearest(record: Record, cells: Sequence[str]) -> list[Side]:
@@ -55,24 +60,14 @@ def nearest(record: Record, cells: Sequence[str]) -> list[Side]:
     return out
 
 
-def nearest_sentence(pairs: Sequence[Side]) -> str:
-    """Returns the sentence for the summary on the pair of roads that differ least."""
-    cell_name, best, *_ = min(pairs, key=lambda side: side[1].distance)
-    return (
-        f"Nearest to each other on either side of the boundary are tests {cell_name}/{best.kept}, where "
-        f"the car kept its lane, and {cell_name}/{best.lost}, where it did not: "
-        f"their distance, as told below, is {best.distance:.2f}."
-    )
-
-
-def boundary(folder: Path, pairs: Sequence[Side]) -> list[Block]:
+def boundary(folder: Path, pairs: Sequence[Side]) -> Table:
     """Returns a table of pairs of roads, with the largest difference of each pair."""
     rows = [_row(folder, *side) for side in pairs]
     name, first, *_ = pairs[0]
     names = [f"{folder}/{name}/{at}" for at in (first.kept, first.lost)]
     note = f"{EXPLAINED} To see a pair: {command_line('view', *names)}"
     heads = ["kept", "margin, m", "lost", "at, m", "distance", "what differs most, kept then lost"]
-    return [Table("pairs", "Nearest pairs of a road that was kept and one that was lost", heads, rows, note)]
+    return Table("pairs", "Nearest pairs of a road that was kept and one that was lost", heads, rows, note)
 
 
 def _row(folder: Path, name: str, pair: BoundaryPair, kept: Result, lost: Result) -> list[TableCell]:

@@ -26,9 +26,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.campaign.faults.failures import curvature_of_lane
 from roadgpt.geometry.curve import Array
 from roadgpt.road import World
+from roadgpt_search.behaviour import curvature_of_lane
 
 STARTING = 25.0  # m, in which the car is still slow
 ENDING = 8.0  # m, that are not driven

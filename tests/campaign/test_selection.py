@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from roadgpt.campaign.faults.fault import faults_in
 from roadgpt.campaign.folder_record import run_again
 from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.selection import chosen, selection_of
@@ -16,6 +15,7 @@ from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
 from roadgpt.network import read_opendrive
 from roadgpt.run import read_run
+from roadgpt_search.faults.fault import faults_in
 from rows import rows
 
 

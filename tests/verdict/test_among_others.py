@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from roadgpt.campaign.columns import features_in
-from roadgpt.campaign.faults.failures import manner_of, reason_of
 from roadgpt.campaign.model import Proposal
 from roadgpt.campaign.single_test import Task, result_of
 from roadgpt.cli.screen import row_of
@@ -22,6 +21,7 @@ from roadgpt.traffic import Tracks
 from roadgpt.verdict import Cause, Incident, Verdict, judge
 from roadgpt.verdict.contact import contacts_of
 from roadgpt.verdict.incidents import limits_at
+from roadgpt_search.faults.failures import manner_of, reason_of
 from staged import among, driven, straight, tracks
 from verdict.test_incidents import WORLD as ROUTE_WORLD
 from verdict.test_incidents import crossroads

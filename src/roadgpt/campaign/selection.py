@@ -8,20 +8,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Literal
 
-from roadgpt.campaign.faults.fault import faults_in
-from roadgpt.campaign.faults.fault_log import kept_analysis
+from roadgpt import plugins
 from roadgpt.campaign.folder_record import has_tests, kept_run, open_record
 from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.record import Record
 from roadgpt.errors import UsageError
 from roadgpt.run import Run
 
-Choice = Literal["failures", "faults", "worst"]
-"""Which of the selected tests: "failures", all failures; "faults", a typical failure of each distinct
-fault; "worst", the failure with the smallest margin or, if no test failed, the passed test with the smallest
-margin."""
 LONGEST = 255  # bytes of one name, in every file system of today
 DIGITS = 18  # of a number that a store can look for
 MOST_NEAR = 3  # names that are offered for a wrong one
@@ -103,15 +97,15 @@ def _cell(record: Record, name: str) -> str:
     )
 
 
-def chosen(place: Selection, choice: Choice | None) -> list[Selection]:
-    """Returns a Selection of each test that the Choice selects, in order; without one, of each that can be
-    read."""
+def chosen(place: Selection, choice: str | None) -> list[Selection]:
+    """Returns a Selection of each of the selected tests that a choice selects, in order: "failures", all
+    failures; "worst", the failure with the smallest margin or, if no test failed, the passed test with the
+    smallest margin; or those that a plug-in ``analyses`` of this name chooses. Without a choice, returns
+    those that can be read."""
     if place.number is not None:
         return [place]
-    if choice == "faults":
-        found = faults_in(place.folder, cell=place.cell)
-        looked = [(fault, kept_analysis(place.folder, fault)) for fault in found.them]
-        return [place.of(its.name if its else fault.names[0]) for fault, its in looked]
+    if choice in plugins.names("analyses"):
+        return [place.of(name) for name in plugins.find("analyses", choice).chosen(place.folder, place.cell)]
     with open_record(place.folder) as record:
         names = record.tests(place.cell, choice)
     return [place.of(name) for name in (names[:1] if choice == "worst" else names)]

@@ -34,7 +34,6 @@ HEADINGS = {
     "Search": {
         "campaign": "Search for failures, or make thousands of roads, with parallel workers.",
         "resume": "Continue a campaign or a run that was interrupted.",
-        "faults": "Group failures into distinct faults, and find why each occurs.",
     },
     "Evaluate": {
         "check": "Check roads against the rules.",

@@ -16,7 +16,7 @@ from functools import cache, partial
 from itertools import chain, takewhile
 from math import inf, isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args, get_origin
 
 import click
 from click.core import ParameterSource
@@ -27,7 +27,6 @@ from roadgpt.errors import BriefError, UsageError, command_line
 
 if TYPE_CHECKING:
     from roadgpt.campaign.gate import Gate
-    from roadgpt.campaign.selection import Choice
     from roadgpt.chat import ChatSettings
     from roadgpt.chat.config import Layer, Setting
     from roadgpt.report import Drawing
@@ -479,6 +478,18 @@ CHAT: Sequence[Option]
 """The options that set fields of ChatSettings; ``roadgpt.chat.config`` looks up those that are not given."""
 MAKING: Sequence[Option]
 """The options of ``roadgpt run`` that say how roads are made, driven, drawn and exported."""
+CHOICES: Sequence[Option]
+"""The options that choose tests of a folder: failures, those of analyses, and the worst."""
+AT_END: Sequence[Option]
+"""The options with which commands that run many tests analyse them at the end."""
+
+
+class Remarks(NamedTuple):
+    """What a summary tells of an analysis."""
+
+    headline: str = ""
+    advice: str = ""  # what it can tell besides, with the command
+    fields: Mapping[str, Any] = {}  # in JSON
 
 
 def of_model(
@@ -553,9 +564,23 @@ def _of_models() -> dict[str, tuple[Option, ...]]:
     return {"WORLD": world, "SETUP": setup, "CHAT": chat, "MAKING": making}
 
 
+@cache
+def _of_analyses() -> dict[str, tuple[Option, ...]]:
+    every: dict[str, GroupedCommand] = {
+        name: plugins.find("commands", name) for name in plugins.names("analyses")
+    }
+    own = [Option(f"--{name}", its.choice, bool) for name, its in every.items()]
+    return {
+        "CHOICES": (FAILURES, *own, WORST),
+        "AT_END": tuple(each for its in every.values() for each in its.at_end),
+    }
+
+
 def __getattr__(name: str) -> Any:
     if name in ("WORLD", "SETUP", "CHAT", "MAKING"):
         return _of_models()[name]
+    if name in ("CHOICES", "AT_END"):
+        return _of_analyses()[name]
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
@@ -599,11 +624,8 @@ SCREEN = (
     _output("--verbose -v", "Print details: requirements of the roads, versions, times."),
 )
 
-CHOICES = (
-    Option("--failures", "From a folder, use only the roads on which the car failed.", bool),
-    Option("--faults", "Use only one typical failure of each distinct fault in a folder.", bool),
-    Option("--worst", "From a folder, use only the road with the smallest margin to failure.", bool),
-)
+FAILURES = Option("--failures", "From a folder, use only the roads on which the car failed.", bool)
+WORST = Option("--worst", "From a folder, use only the road with the smallest margin to failure.", bool)
 _work = partial(Option, heading=Heading.WORKERS)
 WORKERS = (
     _work("-j --workers", "Number of tests run in parallel; use one per core.",
@@ -749,13 +771,18 @@ def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "Ch
     return None
 
 
-def choice_of(values: dict[str, Any]) -> "Choice | None":
-    """Returns which of --failures, --faults and --worst is given, if any; removes them from ``values``."""
-    choices: tuple[Choice, ...] = ("failures", "faults", "worst")
-    said = [name for name in choices if values.pop(name)]
+def choice_of(values: dict[str, Any]) -> str | None:
+    """Returns which of the ``CHOICES`` is given, if any; removes them from ``values``."""
+    said = [each.field for each in _of_analyses()["CHOICES"] if values.pop(each.field)]
     if len(said) > 1:
         raise UsageError(f"--{said[0]} and --{said[1]} contradict each other; give one of them")
     return said[0] if said else None
+
+
+def choices_said() -> str:
+    """Returns the ``CHOICES`` as text, such as '--worst, --faults or --failures'."""
+    last, *others = (each.flag for each in _of_analyses()["CHOICES"])
+    return f"{', '.join(reversed(others))} or {last}"
 
 
 def gate_of(values: dict[str, Any], folder: Path | None) -> "Gate":
@@ -819,15 +846,18 @@ class GroupedCommand(click.Command):
     """A command whose help lists options in groups. It also prints which settings come from files.
 
     ``heading`` is the heading of ``roadgpt --help`` under which a command of another package stands;
-    ``has_simulators`` adds the options of simulators. ``makes`` returns further parameters; it is called when
+    ``has_simulators`` adds the options of simulators. If it analyses tests, ``choice`` is the help of the
+    option with its name that chooses tests, and ``at_end`` are the options of commands that run many tests,
+    with which they analyse them. ``makes`` returns further parameters; it is called when
     they are first used, since options of models load the models."""
 
     def __init__(
-        self, *args: Any, heading: str = "", has_simulators: bool = False,
-        makes: Callable[[], Sequence[click.Parameter]] = tuple, **rest: Any,
+        self, *args: Any, heading: str = "", has_simulators: bool = False, choice: str = "",
+        at_end: Sequence[Option] = (), makes: Callable[[], Sequence[click.Parameter]] = tuple, **rest: Any,
     ) -> None:  # fmt: skip
         super().__init__(*args, **rest)
         self.heading, self.has_simulators, self._makes = heading, has_simulators, makes
+        self.choice, self.at_end = choice, at_end
         self.params.append(HELP_ALL)
 
     def get_params(self, ctx: click.Context) -> list[click.Parameter]:

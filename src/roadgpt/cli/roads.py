@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
-from roadgpt.cli.options import WORLD, typed
+from roadgpt.cli.options import WORLD, choices_said, typed
 from roadgpt.cli.screen import Row, Screen, unreadable
 from roadgpt.cli.streams import warn
 from roadgpt.errors import ExportError, PartError, UsageError, command_line, explained
 from roadgpt.plural import plural
 
 if TYPE_CHECKING:
-    from roadgpt.campaign.selection import Choice, Selection
+    from roadgpt.campaign.selection import Selection
     from roadgpt.network.source import RoadSource
     from roadgpt.road import Design, Geometry, Road, World
     from roadgpt.run import Run
@@ -34,7 +34,6 @@ ROUND_MAP = 50.0  # m, to which the size of a map is rounded up
 ENDINGS = (".json", ".jsonl", ".xodr", ".csv", ".tsv", ".sbft")
 BESIDE_A_ROAD = (".drive.csv", ".route.json")  # endings of files that exporters write beside a road
 MOST_TOLD = 8  # names in a message
-NONE = {"failures": "no road failed in {}", "faults": "no road failed in {}", "worst": "nobody drove in {}"}
 
 
 @dataclass(frozen=True)
@@ -49,7 +48,7 @@ class NamedRoad:
 
 
 def roads_named(
-    files: Sequence[str], choice: "Choice | None", takes_all: bool = False, seen: set[object] | None = None
+    files: Sequence[str], choice: str | None, takes_all: bool = False, seen: set[object] | None = None
 ) -> Iterator[NamedRoad]:
     """Yields the roads that the names refer to, each road once, and none whose key is in ``seen``.
 
@@ -73,7 +72,7 @@ def kind_of(file: str) -> Literal["road", "runs", "campaign"]:
 
 
 def use_each(
-    files: Sequence[str], choice: "Choice | None", use: Callable[[NamedRoad], None], takes_all: bool = False
+    files: Sequence[str], choice: str | None, use: Callable[[NamedRoad], None], takes_all: bool = False
 ) -> int:
     """Calls ``use`` for each road that the names refer to; a name or a road that cannot be used is reported
     and skipped. Returns the exit status: 0, 1 if a format cannot hold a road, or 2 if a name or a road cannot
@@ -99,7 +98,7 @@ def use_each(
     return status
 
 
-def _named(file: str, choice: "Choice | None", takes_all: bool) -> Iterator[NamedRoad]:
+def _named(file: str, choice: str | None, takes_all: bool) -> Iterator[NamedRoad]:
     from roadgpt.campaign.selection import chosen, selection_of
 
     place = selection_of(file)
@@ -110,14 +109,14 @@ def _named(file: str, choice: "Choice | None", takes_all: bool) -> Iterator[Name
         return
     found = chosen(place, choice)
     if choice is not None and not found:
-        raise UsageError(NONE[choice].format(file))
+        raise UsageError(f"{'nobody drove' if choice == 'worst' else 'no road failed'} in {file}")
     if choice is None and not takes_all:
         if not found:
             raise UsageError(f"{place.said} holds no road yet")
         if len(found) > 1:
             raise UsageError(
-                f"{place.said} holds {len(found):,} roads; name one, as {found[0].said}, or say --worst, "
-                "--faults or --failures"
+                f"{place.said} holds {len(found):,} roads; name one, as {found[0].said}, or say "
+                f"{choices_said()}"
             )
     yield from map(_test, found)
 
@@ -286,7 +285,7 @@ def on_a_map(
     return road.moved(x, y, z), size, (x, y, z), tuple(remarks)
 
 
-def shown_roads(files: Sequence[str], choice: "Choice | None", most: int, what: str) -> list[NamedRoad]:
+def shown_roads(files: Sequence[str], choice: str | None, most: int, what: str) -> list[NamedRoad]:
     """Returns the named roads, at most ``most``, to show them together in ``what``, such as 'a page'."""
     shows = f"{what} shows one road or two side by side"
     if len(files) > most:

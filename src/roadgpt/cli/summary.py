@@ -9,16 +9,17 @@ from pathlib import Path
 import click
 import numpy as np
 
+from roadgpt import plugins
 from roadgpt.campaign.csv_tables import RESULTS
-from roadgpt.campaign.faults.fault import Faults, faults_in
-from roadgpt.campaign.folder_record import is_store, open_record, setups_of
+from roadgpt.campaign.folder_record import is_store, open_record
 from roadgpt.campaign.gate import Gate
 from roadgpt.campaign.model import NumberedTest
-from roadgpt.campaign.selection import Choice, Selection, selection_of
+from roadgpt.campaign.selection import Selection, selection_of
 from roadgpt.campaign.status import CellStatus, Status, no_failure, status_of
 from roadgpt.chat import Spent
 from roadgpt.chat.answer import plain
 from roadgpt.check.measures import ups_and_downs
+from roadgpt.cli.options import Remarks
 from roadgpt.cli.repeat_commands import replay_lines, to_resume
 from roadgpt.cli.roads import NamedRoad, roads_named
 from roadgpt.cli.screen import COLOURS, WIDEST, Row, driver_and_oracle, metres, row_of, spending
@@ -30,7 +31,6 @@ from roadgpt.run.folder import is_run, read_run, run_folder
 from roadgpt.run.model import Run, permissions
 from roadgpt.verdict import JUDGEMENT, percent
 
-COMPARED = 500  # largest number of failures, evenly spread, that are grouped (if untested): under a second
 MOST_CELLS = 40  # largest number of cells that are shown one by one
 MOST_TESTS = 40  # of a cell, one by one
 HEAD, SIDES = ("cell", "done", "pass", "fail", "other", "least margin", "what"), "<>>>>><"
@@ -57,22 +57,14 @@ def watch(folder: Path, steps: Iterator[Counter[str]], as_json: bool, quiet: boo
         click.echo(gate.remark, err=as_json)
 
 
-def _faults_of(status: Status) -> Faults | None:
-    """Returns the distinct faults of a campaign; None if no test was driven. Before ``roadgpt faults``
-    has tried small changes, returns groups of similar failures among at most ``COMPARED`` failures."""
-    return faults_in(Path(status.folder), COMPARED) if {"PASS", "FAIL"} & status.outcomes.keys() else None
+def _remarks(status: Status) -> list[Remarks]:
+    return [plugins.find("analyses", name).told(status) for name in plugins.names("analyses")]
 
 
 def _as_json(status: Status, gate: Gate | None = None) -> str:
-    found = _faults_of(status)
-    counts = found and {
-        "faults": found.distinct if found.is_tested else None,
-        "groups": len(found.alone) or len(found.them) - found.distinct,
-        "failures": found.failures,
-        "compared": found.compared,
-    }
+    fields = {name: told for each in _remarks(status) for name, told in each.fields.items()}
     judged = {"gate": gate.sentence, "worse": gate.worse} if gate else {}
-    return json.dumps({**status.to_json(), "distinct": counts, **judged})
+    return json.dumps({**status.to_json(), **fields, **judged})
 
 
 def outcomes_line(outcomes: Mapping[str, int]) -> str:
@@ -82,20 +74,16 @@ def outcomes_line(outcomes: Mapping[str, int]) -> str:
 
 
 def _told(status: Status) -> Iterator[str]:
-    """Yields a campaign's progress, distinct faults and outcomes, and what to do next."""
-    found, cells = _faults_of(status), status.cells
+    """Yields a campaign's progress, outcomes and what analyses tell, and what to do next."""
+    remarks, cells = _remarks(status), status.cells
     yield _headline(status)
-    if found is not None and found.failures:
-        yield f"  {found.headline}"
+    yield from (f"  {each.headline}" for each in remarks if each.headline)
     yield f"  {outcomes_line(status.outcomes)}"
     if other := sum(cell.handed_over for cell in cells):
         yield f"  in {other:,} FAIL the driver had handed over: they are not its failures"
     if {"PASS", "FAIL"} & status.outcomes.keys():
         yield f"  {driver_and_oracle([cell.driver for cell in cells], cells[0].oracle)}"
-    if found is not None and found.them:
-        first = "" if found.is_tested else "how many faults these are, "
-        look = command_line("faults", status.folder, *permissions(setups_of(Path(status.folder))))
-        yield f"  {first}why, how often again, and pictures: {look}"
+    yield from (f"  {each.advice}" for each in remarks if each.advice)
     if status.tokens:
         yield f"  language model: {status.tokens:,} tokens, {status.cost_usd:.4f} USD"
     if not status.is_finished and not status.is_running:
@@ -146,7 +134,7 @@ def cell_lines(cells: Sequence[CellStatus]) -> list[str]:
     return aligned(rows, SIDES)
 
 
-def json_lines(path: Path | str, choice: Choice | None = None) -> Iterator[str]:
+def json_lines(path: Path | str, choice: str | None = None) -> Iterator[str]:
     """Yields one JSON object for a whole campaign, or one for each named road."""
     place = selection_of(str(path))
     if place is not None and is_store(place.folder) and not place.cell and choice is None:
@@ -158,7 +146,7 @@ def json_lines(path: Path | str, choice: Choice | None = None) -> Iterator[str]:
         yield row_of(named.run(), named.said).to_json()
 
 
-def text_lines(path: Path | str, choice: Choice | None = None) -> Iterator[str]:
+def text_lines(path: Path | str, choice: str | None = None) -> Iterator[str]:
     """Yields the summary of a Run with the commands that repeat the Run, or an overview of the tests in a
     folder, a campaign or a cell. If ``choice`` selects one road of a folder, yields the summary of this road;
     if it selects several, a line for each."""

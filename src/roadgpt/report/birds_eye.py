@@ -5,7 +5,7 @@ import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib import colormaps
@@ -57,9 +57,6 @@ from roadgpt.verdict import SEVERITIES, Incident, Severity, Verdict, percent, se
 from roadgpt.verdict.judging import far_beyond
 from roadgpt.verdict.oracle import margins
 
-if TYPE_CHECKING:
-    from roadgpt.campaign.faults.failures import FailureReason
-
 KeyEntry = tuple[str, float, dict[str, Any]]
 """The meaning of a line, the width of its sample in inches, and how matplotlib draws it."""
 Scale = Literal["equal", "thesis"]
@@ -82,8 +79,8 @@ OUTSIDE: tuple[Severity, ...] = SEVERITIES[1:]
 # plasma without its lightest end, which has too little contrast on asphalt
 SPEEDS = LinearSegmentedColormap.from_list("speeds", colormaps["plasma"](np.linspace(0.0, 0.86, 64)))
 BEFORE, AFTER = 50.0, 20.0  # m of road that are shown
-FAULT_ROOM = 6.0  # m beside it
-FAULT_LEAST = 45.0  # m across
+PLACE_ROOM = 6.0  # m beside it
+PLACE_LEAST = 45.0  # m across
 
 
 MOST = 3  # findings; more would cover the road
@@ -319,15 +316,13 @@ def _draw_key(figure: Figure, above: float, entries: list[KeyEntry]) -> None:
 
 
 @in_our_style
-def draw_fault(run: Run, reason: "FailureReason", more: str, path: Path) -> Path:
-    """Writes a picture of the place where a Run failed, with the reason in its header, and ``more``, such as
-    "fails every time (5 of 5 disturbed drives)"."""
+def draw_place(run: Run, station: float, said: str, path: Path) -> Path:
+    """Writes a picture of a Run's road around a station, with a description in its header."""
     assert run.road is not None
     s = run.road.sample(1.0)
-    near = (s.s >= reason.station - BEFORE) & (s.s <= reason.station + AFTER)
-    margin = FAULT_ROOM + run.world.profile_of(run.road).paved_reach
-    frame = Frame.around(s.points[near][:, :2], margin, FAULT_LEAST, run.world.site.map_size)
-    said = f"{reason.sentence}; {more}" if more else reason.sentence
+    near = (s.s >= station - BEFORE) & (s.s <= station + AFTER)
+    margin = PLACE_ROOM + run.world.profile_of(run.road).paved_reach
+    frame = Frame.around(s.points[near][:, :2], margin, PLACE_LEAST, run.world.site.map_size)
     return save(birds_eye(replace(run, description=said), frame=frame), path)
 
 

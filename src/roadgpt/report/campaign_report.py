@@ -13,16 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.campaign.columns import bounds_of_columns, told_of
-from roadgpt.campaign.faults.fault import faults_in
 from roadgpt.campaign.folder_record import kept_run
 from roadgpt.campaign.record import Record, reading_store
-from roadgpt.campaign.status import CellStatus, Status, status_of
+from roadgpt.campaign.status import CellStatus, Status, no_failure, status_of
 from roadgpt.errors import RoadGPTError, command_line, explained
 from roadgpt.plural import plural
 from roadgpt.reading import json_of
 from roadgpt.report.canvas import save_all
 from roadgpt.report.chapters import with_chapters
-from roadgpt.report.chapters.faults import fault_summaries, faults, headline
 from roadgpt.report.chapters.roads import CELLS, MAPS, feature_map
 from roadgpt.report.chapters.validity import outside_sentences, outside_table, passed_tests
 from roadgpt.report.chapters.wording import (
@@ -48,7 +46,6 @@ from roadgpt.road.world import oracle_in_words
 from roadgpt.run import Request
 from roadgpt.run.atomic import refuse_links, remove_numbered
 
-COMPARED = 2000  # failures, evenly spread, that are grouped before they are tested; this takes seconds
 MOST_CELLS = 12  # whose curves and shares are drawn
 TABLES = ("results.csv", "cells.csv")
 NAMED = 30  # failures, and pairs of roads of a campaign with one cell, that are shown one by one
@@ -74,11 +71,8 @@ def _page(folder: Path, record: Record, status: Status, command: str) -> Page:
     title = words[0] if len(words) == 1 else f"A campaign of {plural(len(status.cells), 'cell')}"
     lead = f"{status.done:,} tests in {plural(len(status.cells), 'cell')}"
     lead += "" if status.is_finished else "; the campaign is unfinished"
-    found = faults_in(folder, COMPARED)
-    summaries = fault_summaries(folder, found)
-    gallery, covered = faults(folder, found, summaries), coverage(record, status.done)
-    sections = [gallery] if gallery else []
-    sections += [Section("Feature map", covered)] if covered else []
+    covered = coverage(record, status.done)
+    sections = [Section("Feature map", covered)] if covered else []
     sections.append(Section("Outcomes", _outcomes(record, status, fields, is_paired)))
     if status.scenarios:
         heads, *rows = status.scenario_table
@@ -89,7 +83,8 @@ def _page(folder: Path, record: Record, status: Status, command: str) -> Page:
         sections.append(Section("Failures", failures(folder, record, fields[:MOST_CELLS], goes_on)))
         near: list[Block] = [*outside_table(passed_tests(record)), margins(record, goes_on)]
         sections.append(Section("How near to failing", near))
-    summary = headline(found, summaries, status.outcomes) if _driven(status)[1] else []
+    failed, driven = _driven(status)
+    summary = no_failure(status.outcomes) or ["No road failed."] if driven and not failed else []
     summary += _summary(record, first, status, fields)
     sections, summary = with_chapters(record, sections, summary)
     if is_paired:

@@ -6,14 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from roadgpt.campaign.faults.fault import faults_in
 from roadgpt.campaign.folder_record import open_record
 from roadgpt.campaign.status import no_failure
 from roadgpt.errors import UsageError
 from roadgpt.plural import plural
 from roadgpt.report.chapters import with_chapters
 from roadgpt.report.chapters.alignment import alignment
-from roadgpt.report.chapters.faults import fault_summaries, faults, headline
 from roadgpt.report.chapters.roads import coverage, every_road, overview
 from roadgpt.report.chapters.validity import (
     KINDS,
@@ -55,11 +53,9 @@ def write_run_report(folder: Path, command: str = "") -> Path:
     part = read_group(folder, setup.designer, words)
     if not part.roads:
         raise UsageError(f"{folder} holds no finished road yet; say first: {command}")
-    parts, failed = [part], faults_in(folder)
-    summaries = fault_summaries(folder, failed)
+    parts = [part]
     kinds = [source_of(setup.designer, parts, kind) for kind in KINDS]
-    opening = [overview(parts, world.site.map_size), faults(folder, failed, summaries)]
-    sections = [*filter(None, opening), validity(parts, kinds)]
+    sections = [validity(parts, kinds)]
     if setup.drives:
         left = source_of(setup.designer, parts, LEFT)
         sections += [departures(parts, [left] if left.total else [])]
@@ -68,9 +64,9 @@ def write_run_report(folder: Path, command: str = "") -> Path:
     outcomes = Counter(road.outcome for road in part.roads)
     far = _least(part.roads, "FAIL") if setup.keep_driving else None
     sentences = sentences_of(parts, world, near_and_far(_least(part.roads, "PASS"), far))
-    told = headline(failed, summaries, outcomes) if summaries else no_failure(outcomes)
     with open_record(folder) as record:
-        sections, sentences = with_chapters(record, sections, [*told, *sentences])
+        sections, sentences = with_chapters(record, sections, [*no_failure(outcomes), *sentences])
+    sections[:0] = filter(None, [overview(parts, world.site.map_size)])
     page = Page(
         words,
         sentences,

@@ -27,7 +27,7 @@ from roadgpt.errors import GivenUpError, UsageError
 if TYPE_CHECKING:
     from roadgpt.campaign import Campaign
     from roadgpt.campaign.gate import Gate
-    from roadgpt.campaign.selection import Choice, Selection
+    from roadgpt.campaign.selection import Selection
     from roadgpt.report import Format, Scale
     from roadgpt.road import Design, Road, World
     from roadgpt.run.folder import Draw
@@ -393,7 +393,7 @@ AGAIN = "again"  # folder in that of the tests
 
 
 def drive_again(
-    names: Sequence[str], choice: "Choice | None", out: Path | None, drivers: Sequence[str], axes: "Scale",
+    names: Sequence[str], choice: str | None, out: Path | None, drivers: Sequence[str], axes: "Scale",
     formats: "tuple[Format, ...]", gate: "Gate",
 ) -> None:  # fmt: skip
     """Repeats tests, writes a run folder for each, and warns if a result differs from the recorded one.
@@ -429,7 +429,7 @@ def drive_again(
     gate.close()
 
 
-def _named(names: Sequence[str], choice: "Choice | None") -> "list[Selection]":
+def _named(names: Sequence[str], choice: str | None) -> "list[Selection]":
     """Returns the tests that the names refer to; a number refers to a test in the folder that is named
     first."""
     from roadgpt.campaign.record import no_tests
@@ -440,8 +440,8 @@ def _named(names: Sequence[str], choice: "Choice | None") -> "list[Selection]":
         raise no_tests(Path(names[0]))
     if first.number is None and choice is None and len(names) == 1:
         raise UsageError(
-            f"say which tests of {first.said}: their numbers, such as 17 or c02/17, or --worst, --faults or "
-            "--failures"
+            f"say which tests of {first.said}: their numbers, such as 17 or c02/17, or "
+            f"{options.choices_said()}"
         )
     out = [] if first.number is None and choice is None else chosen(first, choice)
     for name in names[1:]:

@@ -1,217 +1,37 @@
-"""Commands of campaigns: ``roadgpt campaign``, ``resume`` and ``faults``."""
+"""Commands of campaigns: ``roadgpt campaign`` and ``resume``."""
 
 import os
 import sys
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Set
 from contextlib import redirect_stdout
-from functools import partial
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from roadgpt import plugins
 from roadgpt.cli import options
 from roadgpt.cli.commands.evaluate import write_report
 from roadgpt.cli.commands.make import beside, understood
-from roadgpt.cli.options import PATH, Argument, GroupedCommand, Heading, Option, folder, measure, named, whole
+from roadgpt.cli.options import PATH, Argument, GroupedCommand, Heading, Option, measure, named, whole
 from roadgpt.cli.roads import MOST_TOLD, named_in_errors, refuse_file, roads_in, source_of
-from roadgpt.cli.streams import progress, resumable, warn, watched
+from roadgpt.cli.streams import warn
 from roadgpt.errors import PartError, UsageError, command_line
 from roadgpt.plural import plural
 
 if TYPE_CHECKING:
-    from roadgpt.campaign.faults.fault import Faults
-    from roadgpt.campaign.faults.fault_log import FailureAnalysis, FailureDrawing
     from roadgpt.campaign.plan import Plan
     from roadgpt.chat import ChatSettings
     from roadgpt.report import Scale
     from roadgpt.run import Draw
 
-REPEAT = 10  # disturbed drives of each fault, unless the user gives another number
-DRIVES = whole(1, 1000, "drives")
-
-MINIMISE = "For each fault, also find the simplest road on which it still occurs"
-DISTURB = "Number of further drives for each fault, with small disturbances"
-GROUPS = (
-    "Analyse each group of similar failures on its own, without finding out which groups are one fault. This "
-    "saves up to 16 drives for each failure that is tried."
-)
-_failures = partial(Option, heading=Heading.FAILURES)
-FAULT_OPTIONS = (
-    _failures("--faults", "At the end, analyse the failures as 'roadgpt faults' does.", bool),
-    _failures("--minimise", f"{MINIMISE}; implies --faults.", bool),
-    _failures("--repeat", f"{DISTURB}; implies --faults. [default: {REPEAT}]", DRIVES),
-    _failures("--groups", f"{GROUPS} Implies --faults.", bool),
-)
-
-
-class AnalysisOptions(NamedTuple):
-    """Values of the options with which ``roadgpt faults`` analyses failures."""
-
-    repeat: int
-    minimise: bool
-    workers: int
-    quiet: bool
-    groups: bool
-    formats: tuple[str, ...] = ("png",)  # without any, no pictures are drawn
-    is_apart: bool = False  # standard output is reserved for JSON
-
-    def say(self, text: str, is_news: bool = False) -> None:
-        """Prints a text unless ``quiet``; progress messages (``is_news``) go to standard error."""
-        if not self.quiet:
-            click.echo(text, err=is_news or self.is_apart)
-
-
-def analyse_failures(place: Path, look: AnalysisOptions) -> None:
-    """Finds and prints the distinct faults of a folder of runs or a campaign, with an analysis of each."""
-    from roadgpt.campaign.faults.fault import faults_in
-    from roadgpt.campaign.faults.fault_log import FAILURES, write_tables
-    from roadgpt.campaign.faults.remedy import FOLDER, stored_remedies
-    from roadgpt.campaign.folder_record import open_record, setups_of
-    from roadgpt.cli.repeat_commands import typed_words
-    from roadgpt.run.model import permissions
-    from roadgpt.run.versions import versions_now
-
-    found = faults_in(place)
-    if not found.failures:
-        look.say("no road failed, so there is no fault to analyse")
-        return
-    with open_record(place) as record:
-        asked = ((cell.request, cell.generator) for cell in record.cells())
-        record.refuse_changed(versions_now(asked))  # the user is asked for permission here, not in workers
-    go_on = command_line("faults", place, *permissions(setups_of(place)), *typed_words(faults))
-    with resumable(f"finished work is kept; continue with: {go_on}"):
-        found = _tested(place, found, look)
-        look.say(f"{found.sentence}; analysing a typical failure of each", is_news=True)
-        looked = _analysed(place, found, look)
-    table = write_tables(found, looked, place)
-    look.say("\n".join(_summary(place, found, looked)))
-    every = [each for fault in (*found.them, *found.alone) for each in fault.members]
-    tried = [removed for each in every if (removed := stored_remedies(place, each)) is not None]
-    if fixed := sum({*removed.values()} == {None} for removed in tried):
-        look.say(
-            f"no small change could be tried on {fixed:,} of {len(tried):,} failures: their roads have lanes "
-            "of their own and no design, as routes through a map do"
-        )
-    if look.minimise and (left := sum(not its.simplest for its in looked.values())):
-        what = plural(left, "failure")
-        look.say(f"no simplest road of {what}: only a design without junctions can be simplified")
-    look.say(f"tables: {table} and {table.with_name(FAILURES)}")
-    if look.formats:
-        cells = sorted({fault.typical[0].name.cell for fault in found.them})
-        drawn = (f"{place / FOLDER / cell}/*.{kind}" for cell in cells for kind in look.formats)
-        look.say(f"pictures: {', '.join(drawn)}")
-
-
-def _tested(place: Path, found: "Faults", look: AnalysisOptions) -> "Faults":
-    """Tries small changes on failures of all groups until it is known which groups are one fault; returns
-    the faults."""
-    from roadgpt.campaign.executors.processes import unordered_map
-    from roadgpt.campaign.faults.fault import faults_in
-    from roadgpt.campaign.faults.remedy import try_remedies
-    from roadgpt.campaign.workers import LOG
-
-    done, rounds = 0, 0
-    with progress("failures", None, look.quiet) as tell:
-        while found.to_test and not look.groups:
-            rounds, total, later = rounds + 1, done + found.to_come, found.to_come - len(found.to_test)
-            more = f", about {later:,} more in later rounds" * (later > 0)
-            what = f"trying small changes on {len(found.to_test):,} of them{more}"
-            look.say(f"{found.sentence}; round {rounds}: {what}", is_news=True)
-            for _ in unordered_map(partial(try_remedies, place), found.to_test, look.workers, place / LOG):
-                done += 1
-                tell(done, total=total)
-            found = faults_in(place)
-    return found
-
-
-def _analysed(place: Path, found: "Faults", look: AnalysisOptions) -> "dict[int, FailureAnalysis]":
-    """Analyses a typical failure of each fault; returns the analyses by the faults' numbers."""
-    from roadgpt.campaign.executors.processes import unordered_map
-    from roadgpt.campaign.faults.fault_log import AnalysisTask, analyse
-    from roadgpt.campaign.workers import LOG
-
-    draw: FailureDrawing | None = None
-    if look.formats:
-        from roadgpt.report.birds_eye import draw_fault as draw
-    tasks = [
-        AnalysisTask(place, each.number, each.names, look.repeat, look.minimise, draw, look.formats)
-        for each in found.them
-    ]
-    steps = unordered_map(analyse, tasks, look.workers, place / LOG)
-    return dict(watched(steps, len(tasks), "faults", look.quiet))
-
-
-def _summary(place: Path, found: "Faults", looked: "Mapping[int, FailureAnalysis]") -> Iterator[str]:
-    """Yields two rows for each fault: its failures, how often it fails again, why a typical test failed, and
-    the small change with which the failures disappear."""
-    from roadgpt.run.folder import is_run
-
-    wide = max([len("test"), *(len(str(its.name)) for its in looked.values())])
-    line = f"{{:>5}} {{:>8}} {{:>7}}  {{:<{wide}}}  {{}}".format
-    yield line("fault", "failures", "again", "test", "why")
-    for fault in found.them:
-        its = looked[fault.number]
-        again = f"{its.stability.failed}/{len(its.stability.drives)}"
-        yield line(fault.number, f"{len(fault.members):,}", again, str(its.name), its.reason.sentence)
-        alone = "it belongs to no fault" if found.is_tested else "no small changes were tried"
-        removed = f"disappears with {fault.removed_by}" if fault.remedy else f"a group; {alone}"
-        yield f"{'':>{wide + 26}}{removed}"
-        if its.simplest:
-            yield f"{'':>{wide + 26}}simplest: {its.simplest}"
-    stable = sum(its.stability.is_stable for its in looked.values())
-    yield found.headline
-    what = plural(len(found.them), "fault" if found.distinct else "group")
-    yield f"{stable:,} of {what} fail again in at least half of the drives"
-    if looked:
-        one = place if is_run(place) else f"{place}/{looked[1].name}"
-        yield f"look at one: {command_line('view', one)}"
-
-
-# fmt: off
-FAULTS_OPTIONS = (
-    Option("--repeat", f"{DISTURB}.", DRIVES, REPEAT),
-    Option("--minimise", f"{MINIMISE}.", bool),
-    Option("--groups", GROUPS, bool),
-    Option("-j workers", "Number of failures analysed in parallel.", whole(1, 256, "processes"), 1),
-    *(options.DRIVER_AGAIN, options.FORMAT, options.NO_PLOT, options.QUIET),
-)
-# fmt: on
-
-
-@click.command(
-    cls=GroupedCommand, has_simulators=True, params=[Argument("place", "DIR", kind=folder), *FAULTS_OPTIONS]
-)
-def faults(place: Path, driver: tuple[str, ...], **rest: Any) -> None:
-    """Group the failures of a folder of runs or a campaign into distinct faults, and find why each occurs.
-
-    Failures form a group if the 60 m of road around the lane departures are alike. Some failures of each
-    group are driven with small changes, such as a 15 % larger radius of the bend. If the failures of several
-    groups disappear with the same change, these groups are one fault. Further failures of the fault are then
-    driven with this change; a failure that still occurs with it no longer counts as part of the fault. The
-    most typical failure of each fault is driven again several times with slightly varied friction, start
-    position and perception delay; the share of drives that fail again is reported. DIR/faults gets a
-    picture and a sentence for each fault, faults.csv with a line per fault, and failures.csv with a line per
-    failure.
-    Finished work is not repeated, so Ctrl-C loses nothing.
-
-    \b
-    roadgpt faults roadgpt-runs/hairpins-7
-    roadgpt faults roadgpt-runs/hairpins-7 --repeat 30 --minimise -j 2"""
-    from roadgpt.campaign.folder_record import setups_of
-    from roadgpt.drive.loading import check_named_drivers
-
-    check_named_drivers(driver, {setup.driver for setup in setups_of(place)}, place)
-    analyse_failures(place, AnalysisOptions(formats=options.pictures_of(rest), **rest))
-
-
 MOST_TESTS = 10_000_000
 TESTS = whole(1, MOST_TESTS, "the number of tests")
 SECONDS = measure(0, 1e8, "s", above=True)
 BESIDE_A_FILE = {
-    "words", "out", "again", "workers", "executor", "address", "drivers", "faults", "minimise", "repeat",
-    "groups", "junit", "as_json", "quiet", *(each.field for each in options.GATE),
+    "words", "out", "again", "workers", "executor", "address", "drivers", "junit", "as_json", "quiet",
+    *(each.field for each in (*options.AT_END, *options.GATE)),
 }  # fmt: skip
 
 
@@ -247,7 +67,7 @@ CAMPAIGN_OPTIONS = (
     *named(options.SETUP, "simulator", "keep_driving"),
     *options.WORLD,
     *named(options.SETUP, "geometry", "rules"),
-    *(options.NO_DRIVE, *options.CHAT, *FAULT_OPTIONS, *options.GATE, options.JUNIT),
+    *(options.NO_DRIVE, *options.CHAT, *options.AT_END, *options.GATE, options.JUNIT),
     *(options.json_option("Print one JSON object at the end.", heading=Heading.OUTPUT), options.QUIET),
 )
 # fmt: on
@@ -269,7 +89,6 @@ def campaign(ctx: click.Context, /, words: tuple[str, ...], out: Path | None, **
     roadgpt campaign --scenario "ncap:*" --grid standard --driver lane_centring -j 2
     roadgpt campaign study.toml -j 16 --out study
     roadgpt show study"""
-    from roadgpt import plugins
     from roadgpt.campaign.lifecycle import begin
     from roadgpt.run.atomic import to_bytes
     from roadgpt.run.folder import new_folder
@@ -301,7 +120,7 @@ def work_to_the_end(
     """Runs the remaining tests of a campaign or a folder of runs and prints the results.
 
     ``given`` holds the gate, which decides last, and the values of the options, which can request a JUnit
-    file and an analysis of the failures. ``chat`` has the settings of the language model if the user changed
+    file and analyses of the tests. ``chat`` has the settings of the language model if the user changed
     a limit. ``draw`` adds pictures and road files to a folder of runs."""
     from roadgpt.campaign.folder_record import is_store
     from roadgpt.campaign.lifecycle import work
@@ -323,10 +142,8 @@ def work_to_the_end(
                 page = write_report(folder)
                 if not given["quiet"]:
                     click.echo("\n".join([*compared(record), f"report: {page}"]), err=given["as_json"])
-    if any(given[name] for name in ("faults", "minimise", "repeat", "groups")):
-        here = min(given["workers"], os.cpu_count() or 1)  # the campaign's workers may be on other machines
-        asked = given["repeat"] or REPEAT, given["minimise"], here, given["quiet"], given["groups"]
-        analyse_failures(folder, AnalysisOptions(*asked, is_apart=given["as_json"]))
+    for name in plugins.names("analyses"):
+        plugins.find("analyses", name).at_end(folder, given)
     given["gate"].close()
 
 
@@ -481,7 +298,7 @@ RESUME_OPTIONS = (
     *(*options.WORKERS, *named(options.CHAT, "max_tokens", "max_cost"), options.DRIVER_AGAIN),
     Option("--base-url", "Address of the server. Repeat it here if the campaign used one: for safety, your "
            "API key is not sent to an address just because a folder refers to it.", heading=Heading.MODEL),
-    *(*FAULT_OPTIONS, *options.GATE),
+    *(*options.AT_END, *options.GATE),
     options.AGAIN,
     options.AXES,
     options.JUNIT,
@@ -529,7 +346,6 @@ def resume(folder: Path, driver: tuple[str, ...], base_url: str | None, axes: "S
 def _as_before(folder: Path, axes: "Scale") -> "Draw | None":
     """Returns a function that gives a run the same kinds of pictures and road files as the finished runs of a
     folder have."""
-    from roadgpt import plugins
     from roadgpt.report import FORMATS
     from roadgpt.run.exporting import NAME
     from roadgpt.run.folder import RUNS

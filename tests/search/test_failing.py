@@ -12,20 +12,20 @@ import pytest
 from click.testing import CliRunner, Result
 
 from page_words import words_of
-from roadgpt.campaign.faults import fault as fault_module
-from roadgpt.campaign.faults import fault_log, remedy
-from roadgpt.campaign.faults.failures import failures_of, reason_of
-from roadgpt.campaign.faults.fault import faults_in
-from roadgpt.campaign.faults.fault_log import FailureAnalysis
-from roadgpt.campaign.faults.minimise import Simplest
-from roadgpt.campaign.faults.remedy import REMEDIES, Removed
-from roadgpt.campaign.faults.stability import Repeated, Stability, disturbance_of
 from roadgpt.campaign.folder_record import kept_run, run_again
 from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
 from roadgpt.errors import UsageError
 from roadgpt.run import Run
+from roadgpt_search.faults import fault as fault_module
+from roadgpt_search.faults import fault_log, remedy
+from roadgpt_search.faults.failures import failures_of, reason_of
+from roadgpt_search.faults.fault import faults_in
+from roadgpt_search.faults.fault_log import FailureAnalysis
+from roadgpt_search.faults.minimise import Simplest
+from roadgpt_search.faults.remedy import REMEDIES, Removed
+from roadgpt_search.faults.stability import Repeated, Stability, disturbance_of
 
 CUTS = ["--driver", "beamng_like", "--oracle", "thesis"]  # cuts the inside of bends
 WORDS = ["zigzag x3 | down", "-n", 2, "--friction", 0.4, "--seed", 3, "--reader", "plan", *CUTS]

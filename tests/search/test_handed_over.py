@@ -11,13 +11,13 @@ from click.testing import CliRunner
 from campaign.quick import a_design
 from page_words import words_of
 from roadgpt.campaign.csv_tables import write_tables
-from roadgpt.campaign.faults.failures import failures_of
 from roadgpt.campaign.model import Cell, CellBudget, Proposal, Result
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import Store
 from roadgpt.campaign.single_test import FinishedTest
 from roadgpt.cli import app
 from roadgpt.run import Request, Setup
+from roadgpt_search.faults.failures import failures_of
 
 WORDS = "turn left, then a roundabout"
 

@@ -1,19 +1,16 @@
 """Makes the section on distinct faults. No simulations are run."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from roadgpt.campaign.faults.failures import FailureReason, reason_of
-from roadgpt.campaign.faults.fault import DEFINED, GROUPED, Fault, Faults
-from roadgpt.campaign.faults.fault_log import TABLE, FailureAnalysis, kept_analysis
-from roadgpt.campaign.faults.remedy import FOLDER
 from roadgpt.campaign.folder_record import kept_run
 from roadgpt.campaign.model import NumberedTest
-from roadgpt.campaign.status import no_failure
+from roadgpt.campaign.record import Record
 from roadgpt.errors import UsageError, command_line
 from roadgpt.plural import plural
 from roadgpt.report.canvas import FORMATS
+from roadgpt.report.chapters import Chapter
 from roadgpt.report.chapters.wording import as_sentence, percent, row
 from roadgpt.report.page.maps import draw_site, site_of
 from roadgpt.report.page.model import (
@@ -31,7 +28,12 @@ from roadgpt.report.page.model import (
 )
 from roadgpt.run import Run
 from roadgpt.run.model import permissions
+from roadgpt_search.faults.failures import FailureReason, reason_of
+from roadgpt_search.faults.fault import DEFINED, GROUPED, Fault, Faults, faults_in
+from roadgpt_search.faults.fault_log import TABLE, FailureAnalysis, kept_analysis
+from roadgpt_search.faults.remedy import FOLDER
 
+COMPARED = 2000  # failures, evenly spread, that are grouped before they are tested; this takes seconds
 SHOWN = 24  # faults with a picture
 LISTED = 300  # faults of the table
 DRAWN = (
@@ -71,24 +73,30 @@ def fault_summaries(folder: Path, found: Faults) -> list[FaultSummary]:
     return summaries
 
 
-def headline(found: Faults, summaries: Sequence[FaultSummary], outcomes: Mapping[str, int]) -> list[str]:
+def headline(found: Faults, summaries: Sequence[FaultSummary]) -> tuple[str, ...]:
     """Returns the first sentences of a report: the number of faults and, if ``roadgpt faults`` has repeated
-    tests, the number of faults whose repeated test failed in at least half of the drives. ``outcomes`` has
-    the number of tests with each outcome."""
-    if not found.failures:
-        return no_failure(outcomes) or ["No road failed."]
+    tests, the number of faults whose repeated test failed in at least half of the drives."""
     measured = [each.looked.stability.is_stable for each in summaries if each.looked]
     sure = f"{sum(measured)} of {len(measured)} that were driven again" if measured else ""
     what = "faults" if found.distinct else "groups"
     again = [f"Of the {what}, {sure} fail every second time or oftener."] if sure else []
-    return [as_sentence(found.headline), *again]
+    return as_sentence(found.headline), *again
 
 
-def faults(folder: Path, found: Faults, summaries: Sequence[FaultSummary]) -> Section | None:
-    """Returns the section on distinct faults: pictures of the most frequent faults, and a table of all
-    faults in ``summaries``; None if there are no faults."""
-    if not summaries:
+def chapter(record: Record) -> Chapter | None:
+    """Returns the chapter on distinct faults; None if no road failed."""
+    found = faults_in(record.folder, COMPARED)
+    if not found.failures:
         return None
+    summaries = fault_summaries(record.folder, found)
+    return Chapter(section(record.folder, found, summaries), headline(found, summaries), is_first=True)
+
+
+def section(folder: Path, found: Faults, summaries: Sequence[FaultSummary]) -> Section:
+    """Returns the section on distinct faults: pictures of the most frequent faults, and a table of all
+    faults in ``summaries``."""
+    if not summaries:
+        return Section("Failures of which no road is known", [as_sentence(found.headline)])
     blocks: list[Block] = [f"{DEFINED if found.distinct else GROUPED} {DRAWN}"]
     setups = [each.run.request.setup for each in summaries]
     missing = [each for each in summaries if each.looked is None]

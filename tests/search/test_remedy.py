@@ -12,12 +12,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import cumulative_trapezoid
 
-from roadgpt.campaign.faults import remedy
-from roadgpt.campaign.faults.remedy import REMEDIES, Alignment, TriedGroup, faults_by_remedy, remedies_of
 from roadgpt.errors import GivenUpError
 from roadgpt.road import Design, Road, Segment, World, build
 from roadgpt.run import Request, Run, Setup
 from roadgpt.verdict import Verdict
+from roadgpt_search.faults import remedy
+from roadgpt_search.faults.remedy import REMEDIES, Alignment, TriedGroup, faults_by_remedy, remedies_of
 
 WORLD = World()
 

@@ -21,8 +21,6 @@ from typing import Any, NamedTuple, Self, TypeVar
 
 import numpy as np
 
-from roadgpt.campaign.faults.failures import AROUND, STRAIGHT, LocatedFailure, bend_at
-from roadgpt.campaign.faults.stability import outlasted
 from roadgpt.campaign.folder_record import kept_run
 from roadgpt.campaign.model import NumberedTest
 from roadgpt.errors import RoadGPTError, SimulatorError, UsageError, explained
@@ -32,6 +30,8 @@ from roadgpt.reading import read_json
 from roadgpt.road import Road, World
 from roadgpt.run import Run, prove
 from roadgpt.run.atomic import json_text, refuse_links, write_whole
+from roadgpt_search.faults.failures import AROUND, STRAIGHT, LocatedFailure, bend_at
+from roadgpt_search.faults.stability import outlasted
 
 STEP = 0.5  # m, between samples
 

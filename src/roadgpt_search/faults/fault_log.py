@@ -13,22 +13,22 @@ DIR/faults/
 
 For a folder of runs, the level c01/ is left out."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from roadgpt.campaign.faults.failures import FailureReason, reason_of
-from roadgpt.campaign.faults.fault import Fault, Faults
-from roadgpt.campaign.faults.minimise import simplest
-from roadgpt.campaign.faults.remedy import FOLDER, made_folder, page_of, stored
-from roadgpt.campaign.faults.stability import Repeated, Stability, repeated
 from roadgpt.campaign.folder_record import kept_run
 from roadgpt.campaign.model import NumberedTest
 from roadgpt.reading import strictly
 from roadgpt.run import Run, write_run
 from roadgpt.run.atomic import csv_text, json_text, write_whole
 from roadgpt.run.folder import is_run, run_folder
+from roadgpt_search.faults.failures import FailureReason, reason_of
+from roadgpt_search.faults.fault import Fault, Faults
+from roadgpt_search.faults.minimise import simplest
+from roadgpt_search.faults.remedy import FOLDER, made_folder, page_of, stored
+from roadgpt_search.faults.stability import Repeated, Stability, repeated
 
 SIMPLEST = "simplest"
 TABLE, FAILURES = "faults.csv", "failures.csv"
@@ -37,11 +37,6 @@ HEAD = (
     "entered_kmh", "needed_g", "grade", "station_m", "reason", "simplest", "removed_by",
 )  # fmt: skip
 HEAD_OF_FAILURES = ("test", "fault", "way", "side", "radius_m", "station_m", "max_oob", "beyond_m")
-
-
-FailureDrawing = Callable[[Run, FailureReason, str, Path], object]
-"""A function that writes a picture of a failing Run, with an additional sentence, to a file, such as
-``report.birds_eye.draw_fault``."""
 
 
 class AnalysisTask(NamedTuple):
@@ -53,8 +48,7 @@ class AnalysisTask(NamedTuple):
     """Names of the tests with the fault's typical failures, the most typical first."""
     times: int  # number of disturbed drives on the road of each failure
     minimise: bool = False
-    draw: FailureDrawing | None = None
-    formats: tuple[str, ...] = ("png",)  # file formats of the pictures
+    formats: tuple[str, ...] = ()  # file formats of the pictures; without any, none are drawn
 
 
 @dataclass(frozen=True)
@@ -90,8 +84,11 @@ def _repeated(task: AnalysisTask, name: NumberedTest) -> FailureAnalysis:
     found = there or FailureAnalysis(name, reason_of(run), repeated(run, task.times))
     made_folder(path.parent)
     for picture in (path.with_suffix(f".{kind}") for kind in task.formats):
-        if task.draw is not None and (there is None or not picture.is_file()):
-            task.draw(run, found.reason, found.stability.sentence, picture)
+        if there is None or not picture.is_file():
+            from roadgpt.report.birds_eye import draw_place
+
+            said = f"{found.reason.sentence}; {found.stability.sentence}"
+            draw_place(run, found.reason.station, said, picture)
     if there is None:
         _write(path, run, found)
     return found

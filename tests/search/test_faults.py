@@ -11,9 +11,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from campaign.quick import features_of_road
-from roadgpt.campaign.faults import minimise as minimising
-from roadgpt.campaign.faults import stability
-from roadgpt.campaign.faults.failures import (
+from roadgpt.check import inspect
+from roadgpt.cli.app import app
+from roadgpt.drive import COLUMNS, Box, Columns, Command, Drive, View
+from roadgpt.errors import DriverError, UsageError
+from roadgpt.road import ORACLES, CrossSection, Design, Limits, Road, Segment, Site, World, build
+from roadgpt.run import Request, Run, Setup, prove, write_run
+from roadgpt.verdict import Verdict, judge
+from roadgpt_search.faults import minimise as minimising
+from roadgpt_search.faults import stability
+from roadgpt_search.faults.failures import (
     BEND,
     GRADE,
     SHIFT,
@@ -25,21 +32,14 @@ from roadgpt.campaign.faults.failures import (
     surroundings,
     typical,
 )
-from roadgpt.campaign.faults.fault import WAYS
-from roadgpt.campaign.faults.minimise import simplest
-from roadgpt.campaign.faults.stability import (
+from roadgpt_search.faults.fault import WAYS
+from roadgpt_search.faults.minimise import simplest
+from roadgpt_search.faults.stability import (
     Disturbance,
     LateDriver,
     drive_disturbed,
     repeated,
 )
-from roadgpt.check import inspect
-from roadgpt.cli.app import app
-from roadgpt.drive import COLUMNS, Box, Columns, Command, Drive, View
-from roadgpt.errors import DriverError, UsageError
-from roadgpt.road import ORACLES, CrossSection, Design, Limits, Road, Segment, Site, World, build
-from roadgpt.run import Request, Run, Setup, prove, write_run
-from roadgpt.verdict import Verdict, judge
 from roadgpt_search.surrogate import NAMES
 
 WORLD = World()
@@ -264,7 +264,7 @@ def test_disturbed_drives_start_and_slip_as_they_are_told(slid: Run, monkeypatch
         seen.append((drive, world))
         return judge(road, drive, world)
 
-    monkeypatch.setattr("roadgpt.campaign.faults.stability.judge", judged)
+    monkeypatch.setattr("roadgpt_search.faults.stability.judge", judged)
     drive_disturbed(slid, Disturbance(0.9, 0.25, 0.0))
     ((drive, world),) = seen
     assert drive["t"][0] == pytest.approx(-1.75, abs=0.02)
@@ -409,13 +409,13 @@ def test_the_command_looks_into_failures_once(
     assert f"\n1 distinct fault in 1 failure: the car {WAYS[reason_of(slid).way]} {bend}\n" in first.output
     assert not (tmp_path / "faults" / "0001.png").exists()
     with monkeypatch.context() as patch:
-        patch.setattr("roadgpt.campaign.faults.fault_log.repeated", lambda *_: pytest.fail("driven again"))
+        patch.setattr("roadgpt_search.faults.fault_log.repeated", lambda *_: pytest.fail("driven again"))
         assert CliRunner().invoke(app, [*words, "-q"], standalone_mode=False).output == ""
     png = (tmp_path / "faults" / "0001.png").read_bytes()
     assert png.startswith(b"\x89PNG")
     table = (tmp_path / "faults" / "faults.csv").read_text(encoding="utf-8")
     assert len(table.splitlines()) == 2
-    monkeypatch.setattr("roadgpt.campaign.faults.fault_log.repeated", lambda *_: pytest.fail("driven again"))
+    monkeypatch.setattr("roadgpt_search.faults.fault_log.repeated", lambda *_: pytest.fail("driven again"))
     CliRunner().invoke(app, ["faults", str(tmp_path), "--repeat", "2"], standalone_mode=False)
     assert (tmp_path / "faults" / "faults.csv").read_text(encoding="utf-8") == table
     assert folder.is_dir()

@@ -32,12 +32,12 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 from roadgpt.run import Run
 from roadgpt.verdict.verdict import Cause
+from roadgpt_search.behaviour import curvature_of_lane
 
 Way = Literal["wide", "inside", "off", "stopped", "late", "hit", "rule"]
 """The car ran wide of a bend, cut its inside, left a straight, came to a standstill, ran out of time, hit
 somebody, or passed a stop sign, a red light or somebody who had priority."""
 
-TIGHTEST = 0.2  # 1 + 2k is kept above this
 STRAIGHT = 1 / 250  # 1/m; a road that bends less is called straight
 GRAVITY = 9.81  # m/s^2
 BEFORE, AFTER = 25.0, 5.0  # m before and after the departure, where the bend is looked for
@@ -119,12 +119,6 @@ def reason_of(run: Run) -> FailureReason:
     return FailureReason(
         how.way, sentence, station, how.radius, how.side, entered, needed, friction, grade, hill
     )
-
-
-def curvature_of_lane(curvature: Array, middle: Array) -> Array:
-    """Returns the curvature in 1/m of the middle of the driven lane, from that of the centre line and the
-    offset of the middle in metres, positive to the left."""
-    return curvature / np.maximum(1 - middle * curvature, TIGHTEST)
 
 
 def lane_curvature(road: Road, world: World, stations: Array) -> Array:

@@ -10,10 +10,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from roadgpt.campaign.faults.failures import LocatedFailure, Way, failures_of, groups_of, typical
-from roadgpt.campaign.faults.remedy import REMEDIES, Removed, faults_by_remedy, has_remedies, stored_remedies
 from roadgpt.campaign.model import NumberedTest
 from roadgpt.plural import plural
+from roadgpt_search.faults.failures import LocatedFailure, Way, failures_of, groups_of, typical
+from roadgpt_search.faults.remedy import REMEDIES, Removed, faults_by_remedy, has_remedies, stored_remedies
 
 DEFINED = (
     "A fault is a set of failures of one driver in one world that the same small change of the test removes, "
