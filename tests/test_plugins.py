@@ -11,7 +11,9 @@ from roadgpt import plugins
 from roadgpt.cli import app
 from roadgpt.errors import PartError
 
-MAY_BE_EMPTY = {f"roadgpt.{kind}" for kind in ("commands", "checks", "reports", "chapters", "analyses", "settings")}
+MAY_BE_EMPTY = {
+    f"roadgpt.{kind}" for kind in ("commands", "checks", "reports", "chapters", "analyses", "settings")
+}
 SOUND = EntryPoint("sound", "collections:Counter", "roadgpt.drivers")
 
 

@@ -1,7 +1,6 @@
 """The chapter of reports on boundary pairs: similar roads on either side of the boundary of failure."""
 
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Iterator, Sequence
 
 from roadgpt.campaign.model import Result
 from roadgpt.campaign.record import Record
@@ -10,7 +9,7 @@ from roadgpt.errors import command_line
 from roadgpt.report.campaign_report import again
 from roadgpt.report.chapters import Chapter
 from roadgpt.report.chapters.wording import decimal, row
-from roadgpt.report.page.model import Section, Table, TableCell, cell
+from roadgpt.report.page.model import Section, Table, cell
 from roadgpt_search.boundary_pairs import BoundaryPair, pairs_of, weightiest
 
 MOST_CELLS = 12  # that are searched
@@ -27,57 +26,43 @@ EXPLAINED = (
 )
 
 
-Side = tuple[str, BoundaryPair, Result, Result]
-"""Two similar roads from one campaign cell (one combination of prompt, designer, driver and so on): the cell,
-the pair, the test that passed and the test that failed."""
-
-
 def chapter(record: Record) -> Chapter | None:
-    """Returns the chapter on the pairs in cells that search for the boundary; None if there are none."""
+    """Returns the chapter on the pairs of a passed and a failed test that differ least, in cells that search
+    for the boundary; None if there are none."""
     goals = {each.name: each.goal for each in record.cells()}
     begun = [name for name in goals if goals[name] == "boundary" and next(record.results(name), None)]
-    pairs = nearest(record, begun[:MOST_CELLS])
+    pairs = [*_nearest(record, begun[:MOST_CELLS])]
     if not pairs:
         return None
-    name, best, *_ = min(pairs, key=lambda side: side[1].distance)
+    folder, (name, nearest, *_) = record.folder, min(pairs, key=lambda side: side[1].distance)
     said = (
-        f"Nearest to each other on either side of the boundary are tests {name}/{best.kept}, where the car "
-        f"kept its lane, and {name}/{best.lost}, where it did not: their distance, as told below, is "
-        f"{best.distance:.2f}."
+        f"Nearest to each other on either side of the boundary are tests {name}/{nearest.kept}, where the "
+        f"car kept its lane, and {name}/{nearest.lost}, where it did not: their distance, as told below, is "
+        f"{nearest.distance:.2f}."
     )
-    return Chapter(Section("At the boundary", [boundary(record.folder, pairs)]), (said,))
+    name, first, *_ = pairs[0]
+    view = command_line("view", *(f"{folder}/{name}/{at}" for at in (first.kept, first.lost)))
+    rows = [
+        row(
+            cell(f"{name}/{pair.kept}", href=again(folder, name, pair.kept)),
+            decimal(kept.margin),
+            cell(f"{name}/{pair.lost}", href=again(folder, name, pair.lost)),
+            decimal(lost.at_s, 0),
+            decimal(pair.distance),
+            weightiest(*(elements_of(its.plain_design.segments) for its in (kept, lost) if its.plain_design)),
+        )
+        for name, pair, kept, lost in pairs
+    ]
+    heads = ["kept", "margin, m", "lost", "at, m", "distance", "what differs most, kept then lost"]
+    caption = "Nearest pairs of a road that was kept and one that was lost"
+    table = Table("pairs", caption, heads, rows, f"{EXPLAINED} To see a pair: {view}")
+    return Chapter(Section("At the boundary", [table]), (said,))
 
 
-def nearest(record: Record, cells: Sequence[str]) -> list[Side]:
-    """Returns the pairs of a passed and a failed test that differ least, as
-    ``boundary_pairs`` measures it: up to NAMED for one cell, otherwise up to FEW_PAIRS per cell."""
-    out = []
+def _nearest(record: Record, cells: Sequence[str]) -> Iterator[tuple[str, BoundaryPair, Result, Result]]:
+    """Yields cell, pair, passed and failed test: up to NAMED for one cell, or up to FEW_PAIRS per cell."""
     for name in cells:
         some = (name, MOST_SEARCHED // len(cells))
         results = {result.number: result for result in record.results(name, NEAR, some)}
         for pair in pairs_of([*results.values()])[: NAMED if len(cells) == 1 else FEW_PAIRS]:
-            out.append((name, pair, results[pair.kept], results[pair.lost]))
-    return out
-
-
-def boundary(folder: Path, pairs: Sequence[Side]) -> Table:
-    """Returns a table of pairs of roads, with the largest difference of each pair."""
-    rows = [_row(folder, *side) for side in pairs]
-    name, first, *_ = pairs[0]
-    names = [f"{folder}/{name}/{at}" for at in (first.kept, first.lost)]
-    note = f"{EXPLAINED} To see a pair: {command_line('view', *names)}"
-    heads = ["kept", "margin, m", "lost", "at, m", "distance", "what differs most, kept then lost"]
-    return Table("pairs", "Nearest pairs of a road that was kept and one that was lost", heads, rows, note)
-
-
-def _row(folder: Path, name: str, pair: BoundaryPair, kept: Result, lost: Result) -> list[TableCell]:
-    assert kept.plain_design is not None
-    assert lost.plain_design is not None
-    return row(
-        cell(f"{name}/{pair.kept}", href=again(folder, name, pair.kept)),
-        decimal(kept.margin),
-        cell(f"{name}/{pair.lost}", href=again(folder, name, pair.lost)),
-        decimal(lost.at_s, 0),
-        decimal(pair.distance),
-        weightiest(elements_of(kept.plain_design.segments), elements_of(lost.plain_design.segments)),
-    )
+            yield name, pair, results[pair.kept], results[pair.lost]

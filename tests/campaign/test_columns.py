@@ -96,7 +96,10 @@ def test_a_column_stands_in_tables_junit_lines_and_the_report(register: Register
 @pytest.mark.parametrize(
     ("part", "reason"),
     [
-        ("TWICE", "several columns are called LENGTH, one of them of"),
+        (
+            "TWICE",
+            "the columns 'zebra' cannot be computed (ValueError: another column is called LENGTH)",
+        ),
         ("BROKEN", "the columns 'zebra' cannot be computed (ZeroDivisionError: division by zero); repair or"),
     ],
 )
@@ -117,7 +120,10 @@ def test_chapters_stand_before_and_behind_those_of_the_report(register: Register
         out = tmp_path / command
         made = roadgpt(command, *FAILING, "--out", out, *(["--no-plot"] if command == "run" else []))
         assert ("  fastest " in made.stdout) == (command == "run")  # which prints a line for each test
-        page = Path(roadgpt("report", out).stdout.strip()).read_text(encoding="utf-8")
+        file = tmp_path / f"{command}.xml"
+        page = Path(roadgpt("report", out, "--junit", file).stdout.strip()).read_text(encoding="utf-8")
+        assert "fastest_kmh" in page
+        assert file.read_text(encoding="utf-8").count('name="fastest_kmh"') == 2
         heads = [at.split("<")[0] for at in page.split("<h2>")[1:]]
         assert heads.index("Weather") < heads.index(own)
         assert heads[-2:] == ["Advice", "How this was made"]

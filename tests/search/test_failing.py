@@ -243,7 +243,7 @@ def test_where_the_most_typical_failure_is_a_fluke_others_are_tried(
             self.sentence, self.drives = "", ()
 
     monkeypatch.setattr(fault_log, "repeated", lambda run, times: GivenStability(run))
-    _, found = fault_log.analyse(fault_log.AnalysisTask(folder, 1, largest.names, 1))
+    _, found = fault_log.analyse(folder, 1, False, (), (1, largest.names))
     assert found.name == second
     monkeypatch.setattr(fault_log, "repeated", lambda run, times: pytest.fail("no more drives are needed"))
 

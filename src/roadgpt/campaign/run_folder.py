@@ -14,6 +14,7 @@ from typing import Any, Self
 
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
+from roadgpt.campaign.columns import features_in
 from roadgpt.campaign.model import GIVEN, PATIENCE, WITHOUT_GOAL, Cell, CellBudget, Proposal
 from roadgpt.campaign.record import SCHEMA, Record
 from roadgpt.campaign.scheduler import Scheduler
@@ -70,7 +71,7 @@ class RunWriter:
 def finished_run(run: Run) -> FinishedTest:
     """Converts the Run of an earlier session to a FinishedTest."""
     proposal = Proposal(run.design, run.seed, "draft" if run.words or run.brief else GIVEN)
-    return FinishedTest.of(run, Task(run.index, run.index - 1, proposal))
+    return FinishedTest.of(run, Task(run.index, run.index - 1, proposal), features_in(run, told_alone=True))
 
 
 def counted(run: Run) -> FinishedTest:

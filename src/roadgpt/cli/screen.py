@@ -213,23 +213,23 @@ def summary(rows: Sequence[Row]) -> list[tuple[str, int, str, str, str]]:
 def row_of(run: "Run | Result", file: str = "", **more: Any) -> Row:
     """Returns the row of a Run, whose road file is ``file``, or of a stored result; ``more`` are further
     fields."""
-    from roadgpt.campaign.columns import told_of
+    from roadgpt.campaign.columns import features_in, told_of
     from roadgpt.run.model import Run
 
     found: Verdict | Result | None = None
-    more["numbers"] = told_of(run if isinstance(run, Run) else run.features)
+    features = features_in(run, told_alone=True) if isinstance(run, Run) else run.features
+    more["numbers"] = told_of(features)
+    more["at_fault"] = bool(features["AT_FAULT"]) if "AT_FAULT" in features else None
     if isinstance(run, Run):
         found, is_valid, length = run.verdict, run.is_valid, run.length if run.road else None
         findings = tuple(finding.sentence for finding in run.findings)
         more |= {"validation_message": run.validation_message, "findings": findings, "spent": run.spent}
-        more["at_fault"] = run.verdict and run.verdict.is_at_fault
         test = run.request.setup.scenario
         more |= {"words": run.words, "seed": run.seed, "trace": run.trace}
         # as tables of tests hold them
         more["seconds"] = round(run.seconds.design, 4) + round(run.seconds.drive, 4)
     else:
         found, is_valid, length = run, run.outcome not in ("INVALID", "ERROR"), run.length or None
-        more["at_fault"] = bool(run.features["AT_FAULT"]) if "AT_FAULT" in run.features else None
         test = more.pop("test", "")
     if found is not None:
         more |= {"max_oob": found.max_oob, "beyond_m": found.beyond, "margin_m": found.margin}

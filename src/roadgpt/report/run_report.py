@@ -6,7 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from roadgpt.campaign.columns import told_of
 from roadgpt.campaign.folder_record import open_record
+from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import no_failure
 from roadgpt.errors import UsageError
 from roadgpt.plural import plural
@@ -65,6 +67,7 @@ def write_run_report(folder: Path, command: str = "") -> Path:
     far = _least(part.roads, "FAIL") if setup.keep_driving else None
     sentences = sentences_of(parts, world, near_and_far(_least(part.roads, "PASS"), far))
     with open_record(folder) as record:
+        sections += numbers(record)
         sections, sentences = with_chapters(record, sections, [*no_failure(outcomes), *sentences])
     sections[:0] = filter(None, [overview(parts, world.site.map_size)])
     page = Page(
@@ -162,6 +165,19 @@ def comparisons_of(parts: Sequence[RoadGroup], world: World, between: Sequence[T
         *([covered] if covered else []),
         every_road(parts, world.site.map_size),
     ]
+
+
+def numbers(record: Record) -> list[Section]:
+    """Returns the section on the numbers of tests that plug-ins ``columns`` tell, if there are any."""
+    tests = [*record.results(where="tests.number <= ?", values=(MOST_NAMED,))]
+    told = [{its.key: its.value for its in told_of(each.features)} for each in tests]
+    keys = [*dict.fromkeys(key for own in told for key in own)]
+    rows = [
+        row(each.number, each.outcome, *(decimal(own.get(key)) for key in keys))
+        for each, own in zip(tests, told, strict=True)
+    ]
+    table = Table("numbers", f"The first {plural(len(rows), 'road')}", ["road", "outcome", *keys], rows)
+    return [Section("Numbers of the tests", [table])] if keys else []
 
 
 MOST_NAMED = 50

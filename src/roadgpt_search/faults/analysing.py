@@ -25,7 +25,6 @@ from roadgpt_search.command import AT_END, REPEAT, faults
 from roadgpt_search.faults.fault import Faults, faults_in
 from roadgpt_search.faults.fault_log import (
     FAILURES,
-    AnalysisTask,
     FailureAnalysis,
     analyse,
     kept_analysis,
@@ -91,11 +90,9 @@ def analyse_failures(
     with resumable(f"finished work is kept; continue with: {go_on}"):
         found = found if groups else _tested(place, found, workers, quiet, say)
         say(f"{found.sentence}; analysing a typical failure of each", is_news=True)
-        tasks = [
-            AnalysisTask(place, each.number, each.names, repeat, minimise, formats) for each in found.them
-        ]
-        steps = unordered_map(analyse, tasks, workers, place / LOG)
-        looked = dict(watched(steps, len(tasks), "faults", quiet))
+        look = partial(analyse, place, repeat, minimise, formats)
+        steps = unordered_map(look, [(each.number, each.names) for each in found.them], workers, place / LOG)
+        looked = dict(watched(steps, len(found.them), "faults", quiet))
     table = write_tables(found, looked, place)
     say("\n".join(_summary(place, found, looked)))
     every = [each for fault in (*found.them, *found.alone) for each in fault.members]

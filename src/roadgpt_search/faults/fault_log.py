@@ -13,10 +13,10 @@ DIR/faults/
 
 For a folder of runs, the level c01/ is left out."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from roadgpt.campaign.folder_record import kept_run
 from roadgpt.campaign.model import NumberedTest
@@ -39,18 +39,6 @@ HEAD = (
 HEAD_OF_FAILURES = ("test", "fault", "way", "side", "radius_m", "station_m", "max_oob", "beyond_m")
 
 
-class AnalysisTask(NamedTuple):
-    """One fault to analyse; the task can be sent to another process."""
-
-    folder: Path
-    fault: int  # number of the fault
-    names: tuple[NumberedTest, ...]
-    """Names of the tests with the fault's typical failures, the most typical first."""
-    times: int  # number of disturbed drives on the road of each failure
-    minimise: bool = False
-    formats: tuple[str, ...] = ()  # file formats of the pictures; without any, none are drawn
-
-
 @dataclass(frozen=True)
 class FailureAnalysis:
     """The analysis of one failure."""
@@ -62,28 +50,32 @@ class FailureAnalysis:
     """A sentence about the simplest road that reproduces the failure; empty if none was requested."""
 
 
-def analyse(task: AnalysisTask) -> tuple[int, FailureAnalysis]:
-    """Returns the number of a fault and the analysis of its most typical failure that recurs in at least half
-    of the disturbed drives, or else of the one that recurs most often; with ``task.minimise`` also the
-    simplest road for it. A stored analysis with as many drives is read instead."""
+def analyse(
+    folder: Path, times: int, minimise: bool, formats: Sequence[str],
+    fault: tuple[int, Sequence[NumberedTest]],
+) -> tuple[int, FailureAnalysis]:  # fmt: skip
+    """Returns the number of a fault, of which typical failures are given, and the analysis of the first that
+    recurs in at least half of ``times`` disturbed drives, or else of the one that recurs most often; with
+    ``minimise`` also the simplest road for it. A stored analysis with as many drives is read instead. Its
+    pictures are drawn in the ``formats``."""
     best: FailureAnalysis | None = None
-    for name in task.names:
-        found = _repeated(task, name)
+    for name in fault[1]:
+        found = _repeated(folder, name, times, formats)
         if best is None or found.stability.share > best.stability.share:
             best = found
         if best.stability.is_stable:
             break
     assert best is not None, "every fault has a failure"
-    return task.fault, _least(task, best) if task.minimise else best
+    return fault[0], _least(folder, best) if minimise else best
 
 
-def _repeated(task: AnalysisTask, name: NumberedTest) -> FailureAnalysis:
+def _repeated(folder: Path, name: NumberedTest, times: int, formats: Sequence[str]) -> FailureAnalysis:
     """Returns the analysis of one failure; drives and draws the failure unless that was done before."""
-    run, path = kept_run(task.folder, *name), page_of(task.folder / FOLDER, name)
-    there = _read(path, run, name, task.times)
-    found = there or FailureAnalysis(name, reason_of(run), repeated(run, task.times))
+    run, path = kept_run(folder, *name), page_of(folder / FOLDER, name)
+    there = _read(path, run, name, times)
+    found = there or FailureAnalysis(name, reason_of(run), repeated(run, times))
     made_folder(path.parent)
-    for picture in (path.with_suffix(f".{kind}") for kind in task.formats):
+    for picture in (path.with_suffix(f".{kind}") for kind in formats):
         if there is None or not picture.is_file():
             from roadgpt.report.birds_eye import draw_place
 
@@ -94,18 +86,18 @@ def _repeated(task: AnalysisTask, name: NumberedTest) -> FailureAnalysis:
     return found
 
 
-def _least(task: AnalysisTask, found: FailureAnalysis) -> FailureAnalysis:
+def _least(folder: Path, found: FailureAnalysis) -> FailureAnalysis:
     """Returns the analysis with its simplest road; searches for this road unless it is stored already."""
-    place = run_folder(task.folder / FOLDER / SIMPLEST / found.name.cell, found.name.number)
+    place = run_folder(folder / FOLDER / SIMPLEST / found.name.cell, found.name.number)
     if found.simplest and is_run(place):
         return found
-    run = kept_run(task.folder, *found.name)
+    run = kept_run(folder, *found.name)
     if run.plain_design is None:
         return found
     least = simplest(run)
     write_run(least.run, made_folder(place.parent.parent))
     found = replace(found, simplest=least.sentence)
-    _write(page_of(task.folder / FOLDER, found.name), run, found)
+    _write(page_of(folder / FOLDER, found.name), run, found)
     return found
 
 

@@ -40,43 +40,35 @@ class ToldNumber(NamedTuple):
     text: str
 
 
-def features_in(run: Run) -> dict[str, float]:
-    """Returns the numbers of all columns of a valid road and its drive by name; none of an invalid road."""
+def features_in(run: Run, told_alone: bool = False) -> dict[str, float]:
+    """Returns the numbers of all columns of a valid road and its drive by name, or of those plug-ins alone
+    that tell some; none of an invalid road."""
     found: dict[str, float] = {}
-    for name in plugins.names("columns"):
-        own = _computed(name, run)
-        if twice := found.keys() & own.keys():
-            origin = plugins.origin("columns", name)
-            raise PartError(f"several columns are called {min(twice)}, one of them of {origin}; rename it")
-        found |= own
+    is_invalid = run.road is None or (run.findings and run.drive is None)
+    for name in () if is_invalid else plugins.names("columns"):
+        part: Columns = plugins.find("columns", name)
+        try:
+            own = {} if told_alone and not part.told else {**part.of(run)}
+            if twice := found.keys() & own.keys():
+                raise ValueError(f"another column is called {min(twice)}")
+            found |= {column: float(value) for column, value in own.items()}
+        except Exception as error:  # of another package, which may fail in any way
+            raise PartError(
+                f"the columns '{name}' cannot be computed ({type(error).__name__}: {error}); repair or "
+                f"uninstall {plugins.origin('columns', name)}"
+            ) from error
     return found
 
 
-def _computed(name: str, run: Run) -> dict[str, float]:
-    if run.road is None or (run.findings and run.drive is None):
-        return {}
-    part: Columns = plugins.find("columns", name)
-    try:
-        return {column: float(value) for column, value in part.of(run).items()}
-    except Exception as error:  # of another package, which may fail in any way
-        raise PartError(
-            f"the columns '{name}' cannot be computed ({type(error).__name__}: {error}); repair or uninstall "
-            f"{plugins.origin('columns', name)}"
-        ) from error
-
-
-def told_of(test: Run | Mapping[str, float]) -> tuple[ToldNumber, ...]:
-    """Returns those numbers of a Run, or among the features of a stored result, that are told."""
-    found = list[ToldNumber]()
-    for name in plugins.names("columns"):
-        part: Columns = plugins.find("columns", name)
-        numbers = test if not isinstance(test, Run) else _computed(name, test) if part.told else {}
-        found += [
-            ToldNumber(name, told.key, numbers[column], told.text(numbers[column]))
-            for column, told in part.told.items()
-            if column in numbers
-        ]
-    return tuple(found)
+def told_of(features: Mapping[str, float]) -> tuple[ToldNumber, ...]:
+    """Returns the numbers of a test that are told."""
+    parts = {name: plugins.find("columns", name).told for name in plugins.names("columns")}
+    return tuple(
+        ToldNumber(name, told.key, features[column], told.text(features[column]))
+        for name, its in parts.items()
+        for column, told in its.items()
+        if column in features
+    )
 
 
 def bounds_of_columns() -> dict[str, tuple[float, float]]:
