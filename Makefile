@@ -78,6 +78,7 @@ bench: $(VENV)/.installed-test
 # Not --quiet, with which --strict overlooks links that lead nowhere.
 docs: $(VENV)/.installed-docs
 	$(BIN)/python docs/commands.py
+	$(BIN)/python docs/language.py
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
 	@echo "make docs: site/index.html, $(SECONDS_SO_FAR) s"
 

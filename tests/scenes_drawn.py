@@ -7,25 +7,18 @@ from pydantic import ValidationError
 
 from roadgpt.brief.amount import Amount, between, exactly
 from roadgpt.brief.scene import (
-    DOINGS,
-    NUMBERS,
     ON_ITS_WAY,
-    SPOTS,
-    STRUCTURES,
     Action,
-    Flow,
+    Air,
     Land,
-    Landform,
     Lie,
-    Light,
     Mark,
     Role,
     Scene,
     Side,
-    Surface,
-    What,
-    Where,
 )
+from roadgpt.language.names import Flow, Landform, Light, Surface, What, Where
+from roadgpt.language.table import LANDFORMS, MANEUVERS, NUMBERS, PLACES, WEATHER
 from strategies import amounts, maybe
 
 
@@ -60,7 +53,7 @@ def drawn(model: Any, **fields: Any) -> st.SearchStrategy[Any]:
     return st.fixed_dictionaries(fields).map(made).filter(lambda each: each is not None)
 
 
-PLACES = st.builds(
+PARTS = st.builds(
     Mark,
     word=st.sampled_from(["after", "before", "in"]),
     of=st.sampled_from(["turn", "junction"]),
@@ -69,7 +62,7 @@ PLACES = st.builds(
 SIDES = st.none() | st.sampled_from(get_args(Side))
 
 
-CUES = {"at": PLACES} | {
+CUES = {"at": PARTS} | {
     name: amounts(*NUMBERS[name][1:3]) for name in ("time", "distance", "ttc", "headway", "gap", "station")
 }
 
@@ -81,8 +74,8 @@ def actions(whats: list[What]) -> st.SearchStrategy[Action]:
         lambda what: st.builds(
             lambda cue, **own: Action(what=what, **own, **cue),
             cue=cue,
-            side=SIDES if DOINGS[what].has_side else st.none(),
-            **{name: each for name, each in numbers(Action).items() if name in DOINGS[what].numbers},
+            side=SIDES if MANEUVERS[what].side else st.none(),
+            **{name: each for name, each in numbers(Action).items() if name in MANEUVERS[what].numbers},
         )
     )
 
@@ -90,17 +83,17 @@ def actions(whats: list[What]) -> st.SearchStrategy[Action]:
 @st.composite
 def roles(draw: st.DrawFn) -> Role:
     where = draw(st.sampled_from(get_args(Where)))
-    kind = draw(st.sampled_from(SPOTS[where].who))
-    can = [what for what in get_args(What) if kind in DOINGS[what].who]
-    first = [what for what in can if where in DOINGS[what].starts]
+    kind = draw(st.sampled_from(PLACES[where].who))
+    can = [what for what in get_args(What) if kind in MANEUVERS[what].who]
+    first = [what for what in can if where in MANEUVERS[what].starts]
     later = [what for what in can if what not in ON_ITS_WAY or what in first]
     rest = st.lists(actions(later), max_size=2) if later else st.just([])
     acts = st.builds(lambda one, more: (one, *more), actions(first), rest) if first else st.just(())
-    side = SIDES if SPOTS[where].before_side else st.none()
-    stands = where == "parked" or kind not in DOINGS["keep"].who
+    side = SIDES if PLACES[where].side else st.none()
+    stands = where == "parked" or kind not in MANEUVERS["keep"].who
     speeds = () if stands else (("speed", "faster"),)
     more = draw(one_of(("gap", "headway", "station"), *speeds, ("overlap", "impact", "offset"), where=where))
-    at = maybe(PLACES) if not more.keys() & {"gap", "headway", "station"} else st.none()
+    at = maybe(PARTS) if not more.keys() & {"gap", "headway", "station"} else st.none()
     fields = {
         "kind": st.just(kind),
         "count": st.sampled_from([exactly(1), exactly(3), between(1, 50), Amount(lo=2)]),
@@ -120,7 +113,7 @@ def casts(draw: st.DrawFn) -> tuple[Role, ...]:
         word, awaited = draw(st.sampled_from(["after", "with"])), cast[0].actions[-1].what
         mark = Mark(word=word, of=cast[0].kind, number=1, what=awaited)
         action = cast[-1].actions[-1]
-        free = {name: getattr(action, name) for name in ("what", "side", *DOINGS[action.what].numbers)}
+        free = {name: getattr(action, name) for name in ("what", "side", *MANEUVERS[action.what].numbers)}
         waits = (*cast[-1].actions[:-1], Action(**free, at=mark))
         cast[-1] = cast[-1].model_copy(update={"actions": waits})
     return tuple(cast)
@@ -130,12 +123,18 @@ LANDS = st.sampled_from(get_args(Landform)).flatmap(
     lambda kind: st.builds(
         Land,
         kind=st.just(kind),
-        lie=st.none() if kind in STRUCTURES else st.none() | st.sampled_from(get_args(Lie)),
-        side=st.none() if kind in STRUCTURES else SIDES,
+        lie=st.none() if LANDFORMS[kind].structure else st.none() | st.sampled_from(get_args(Lie)),
+        side=st.none() if LANDFORMS[kind].structure else SIDES,
         count=st.sampled_from([exactly(1), exactly(3)]),
         length=maybe(amounts(1, 10_000)),
     )
 )
+WEATHERS = st.tuples(
+    *(
+        maybe(amounts(row.least, row.most).map(lambda amount, kind=kind: Air(kind=kind, amount=amount)))
+        for kind, row in WEATHER.items()
+    )
+).map(lambda found: tuple(filter(None, found)))
 SCENES = drawn(
     Scene,
     speed=maybe(amounts(0, 250)),
@@ -146,8 +145,7 @@ SCENES = drawn(
     flow=st.none() | st.sampled_from(get_args(Flow)),
     oncoming=st.none() | st.sampled_from([*get_args(Flow), "none"]),
     parked=st.lists(st.sampled_from(get_args(Side))).map(tuple),
-    fog=maybe(amounts(5, 1000)),
-    rain=maybe(amounts(0.1, 200)),
+    weather=WEATHERS,
     light=st.none() | st.sampled_from(get_args(Light)),
     surface=st.none() | st.sampled_from(get_args(Surface)),
 )

@@ -35,10 +35,10 @@ from roadgpt.brief.change.request import NUMBERING, OF_SLOPE, REORDERS, Change, 
 from roadgpt.brief.change.staging import changed_scene
 from roadgpt.brief.readers.model.trained import DOUBT
 from roadgpt.brief.scene import land_remark, parts_said, scene_text
-from roadgpt.brief.words import SURFACES
 from roadgpt.chat import ChatSettings
 from roadgpt.check.measures import MeasuredFeature, Measures, ups_and_downs, way
 from roadgpt.errors import EditError, IdleEditError, UnclearPlaceError
+from roadgpt.language.table import SURFACES
 from roadgpt.road import Design, Geometry, Segment, Site, World, build
 from roadgpt_edit.candidates import RENAMED, candidates_of, made, sentence_of
 from roadgpt_edit.fit import Look

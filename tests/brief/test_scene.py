@@ -1,7 +1,6 @@
 """Scenes in plans: what is read, written, said and refused, and what the catalogues of others need."""
 
 import re
-from importlib.resources import files
 from pathlib import Path
 from typing import get_args
 
@@ -13,24 +12,12 @@ from roadgpt.brief import read
 from roadgpt.brief.amount import at_most, between, exactly
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import plan, read_plan, read_scene, scene_plan
-from roadgpt.brief.scene import (
-    DOINGS,
-    FLOWS,
-    LIGHTS,
-    NUMBERS,
-    SPOTS,
-    WEATHER,
-    Action,
-    ActorKind,
-    Landform,
-    Lie,
-    Role,
-    Scene,
-    Surface,
-    scene_text,
-)
+from roadgpt.brief.readers.chat import RULES
+from roadgpt.brief.scene import Action, Lie, Role, Scene, scene_text
 from roadgpt.brief.sentence import sentence
 from roadgpt.errors import BriefError
+from roadgpt.language.names import ActorKind, Landform, Surface
+from roadgpt.language.table import FLOWS, LIGHTS, MANEUVERS, NUMBERS, PLACES, WEATHER
 from scenes_drawn import SCENES
 from strategies import briefs
 from tables import rows
@@ -134,15 +121,17 @@ def test_the_page_has_every_word_and_every_bound() -> None:
     section = PAGE.read_text(encoding="utf-8").split("## Scenes\n")[1].split("\n## ")[0]
     words = {*re.findall(r"[a-z_]+", section)}
     keys = {number.key for number in NUMBERS.values()}
+    users = PAGE.with_name("road-users.md").read_text(encoding="utf-8")
+    assert {*KINDS} <= {*re.findall(r"`(\w+)`", users)}
     known = {
-        *KINDS,
-        *SPOTS,
-        *DOINGS,
+        *PLACES,
+        *MANEUVERS,
         *FLOWS,
         *LIGHTS,
         *get_args(Surface),
         *get_args(Landform),
         *get_args(Lie),
+        *WEATHER,
     }
     assert not {*known, *keys} - words
     table = [
@@ -160,10 +149,10 @@ def test_the_page_has_every_word_and_every_bound() -> None:
         what: number
         for names, number in re.findall(r"^\| (`\w+`(?:, `\w+`)*) \| *`?(\w*)`? *\| ", section, re.MULTILINE)
         for what in re.findall(r"\w+", names)
-        if what in DOINGS
+        if what in MANEUVERS
     }
     assert starts == {
-        what: NUMBERS[each.numbers[0]].key if each.numbers else "" for what, each in DOINGS.items()
+        what: NUMBERS[each.numbers[0]].key if each.numbers else "" for what, each in MANEUVERS.items()
     }
 
 
@@ -174,9 +163,9 @@ def test_the_grammar_and_the_prompt_give_a_side_to_whom_the_language_gives_one()
         except BriefError:
             return False
 
-    starts = {what: doing.starts[0] for what, doing in DOINGS.items()}
-    sided = {what for what in DOINGS if takes(f"car {starts[what]}: {what} left")}
-    beside = {where for where in SPOTS if takes(f"car {where} left")}
+    starts = {what: doing.starts[0] for what, doing in MANEUVERS.items()}
+    sided = {what for what in MANEUVERS if takes(f"car {starts[what]}: {what} left")}
+    beside = {where for where in PLACES if takes(f"car {where} left")}
     page = PAGE.read_text(encoding="utf-8")
     line = re.search(r"^ +WHAT +=(.*)\|", page, re.MULTILINE)
     assert line is not None
@@ -185,9 +174,8 @@ def test_the_grammar_and_the_prompt_give_a_side_to_whom_the_language_gives_one()
     assert wheres is not None
     (lone, opposite), more = re.findall(r"(.*)\| (\w+) \[", wheres[1])[0], wheres[1].split("\n")[1]
     assert {opposite, *re.findall(r"[a-z]+", more)} - {"left", "right"} == beside
-    assert {*re.findall(r"[a-z]+", lone)} == {*SPOTS} - beside
-    rules = files("roadgpt.brief.readers").joinpath("chat_rules.txt").read_text(encoding="utf-8")
-    only = re.search(r"left or right \(only ([^)]*)\)", rules)
+    assert {*re.findall(r"[a-z]+", lone)} == {*PLACES} - beside
+    only = re.search(r"left or right \(only ([^)]*)\)", RULES)
     assert only is not None
     assert {*only[1].split(", ")} == sided
 

@@ -12,18 +12,10 @@ from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.change.request import EditRequest, SceneChange, Things
 from roadgpt.brief.change.staging import changed_scene
 from roadgpt.brief.plan import read_scene, scene_plan
-from roadgpt.brief.scene import (
-    DOINGS,
-    NUMBERS,
-    ActorKind,
-    Landform,
-    Patch,
-    Role,
-    Scene,
-    What,
-    Where,
-)
+from roadgpt.brief.scene import Patch, Role, Scene
 from roadgpt.errors import EditError, IdleEditError
+from roadgpt.language.names import ActorKind, Landform, What, Where
+from roadgpt.language.table import MANEUVERS, NUMBERS
 from roadgpt.road import World
 from roadgpt_edit.editing import edit
 from scenes_drawn import LANDS, actions, roles
@@ -78,7 +70,7 @@ DEEDS = st.sampled_from(get_args(What)).flatmap(
     lambda what: st.builds(
         lambda target, key, value: SceneChange("number", target, doing=what, key=key, **value),
         ACTORS,
-        st.sampled_from([*DOINGS[what].numbers, "time", "gap", "ttc"]),
+        st.sampled_from([*MANEUVERS[what].numbers, "time", "gap", "ttc"]),
         VALUES,
     )
 )

@@ -8,8 +8,9 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from roadgpt.brief.plan import read_scene
-from roadgpt.brief.scene import VEHICLES, ActorKind
 from roadgpt.brief.visibility import clear_range, visual_range, weather_drawn
+from roadgpt.language.names import ActorKind
+from roadgpt.language.table import VEHICLES
 
 KINDS = get_args(ActorKind)
 
@@ -56,10 +57,10 @@ def test_each_drive_draws_its_weather_evenly_from_the_range_and_keeps_what_is_ex
     scene = read_scene("fog 50..150; rain 2..; medium")
     drawn = [weather_drawn(scene, seed) for seed in range(300)]
     assert drawn[7] == weather_drawn(scene, 7)
-    fogs, rains = ([each.fog.lo for each in drawn], [each.rain.lo for each in drawn])
+    fogs, rains = ([each.amount_of(kind).lo for each in drawn] for kind in ("fog", "rain"))
     assert 50 <= min(fogs) < 55 < 145 < max(fogs) <= 150
     assert 2 <= min(rains) < 6 < 190 < max(rains) <= 200  # a bound goes to the end of what is possible
     assert sum(fogs) / 300 == pytest.approx(100, abs=6)
-    assert all(each.fog.exact and each.flow == "medium" for each in drawn)
+    assert all(each.weather[0].amount.exact and each.flow == "medium" for each in drawn)
     exact = read_scene("fog 60; rain 5")
     assert weather_drawn(exact, 1) is exact

@@ -12,9 +12,10 @@ from fake_chat import FakeChat
 from roadgpt.brief import exactly, normal, read
 from roadgpt.brief.plan import TESTED_CAR, plan
 from roadgpt.brief.readers.chat import EXAMPLES, RULES, ChatReader, PlanAnswer
-from roadgpt.brief.scene import DOINGS, FLOWS, LIGHTS, NUMBERS, SPOTS, WEATHER, ActorKind, Surface
 from roadgpt.chat import ChatSettings, Message, Reply, Spent
 from roadgpt.errors import BriefError
+from roadgpt.language.names import ActorKind, Surface
+from roadgpt.language.table import FLOWS, LIGHTS, MANEUVERS, NUMBERS, PLACES, WEATHER
 from tables import rows as table_rows
 
 
@@ -135,8 +136,8 @@ def test_the_model_is_told_every_word_of_scenes() -> None:
     keys = {number.key for name, number in NUMBERS.items() if name not in WEATHER}
     words = {
         *get_args(ActorKind),
-        *SPOTS,
-        *DOINGS,
+        *PLACES,
+        *MANEUVERS,
         *FLOWS,
         *WEATHER,
         *LIGHTS,

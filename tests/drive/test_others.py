@@ -152,9 +152,9 @@ def test_weather_hides_who_is_beyond_the_visual_range_and_changes_nothing_else(
     drive = simulate(ROAD, WORLD.changed(scene=scene), driver, 1, replay=others)
     assert drive.to_bytes() == clear.to_bytes()  # nobody looks, and contact is contact
     if ".." in scene:  # drawn by the seed, and told to drivers
-        lit = unlit = driver.views[0].world.scene.fog.lo
+        lit = unlit = driver.views[0].world.scene.weather[0].amount.lo
         assert 20 < lit < 40
-        assert lit == driver.views[0].world.scene.fog.hi
+        assert lit == driver.views[0].world.scene.weather[0].amount.hi
     for view, whole in zip(driver.views[::20], before.views[::20], strict=True):
         middle = drive.car.ahead * np.array([np.cos(view.heading), np.sin(view.heading)]) + [view.x, view.y]
         near = [

@@ -73,11 +73,11 @@ def test_what_a_scene_can_have_is_not_told_to_be_unbuilt(name: str) -> None:
 def test_rain_and_fog_of_the_words_are_driven_in_and_rain_makes_the_road_wet() -> None:
     """Rain from 2.5 to 7.6 mm/h is moderate (Glossary of Meteorology), fog below 200 m is thick."""
     found = world_for(Brief(beside=("rain", "fog")), World())
-    assert (str(found.scene.rain), str(found.scene.fog)) == ("2.5 to 7.6", "50 to 200")
+    assert [str(each.amount) for each in found.scene.weather] == ["50 to 200", "2.5 to 7.6"]
     assert found.site.friction == 0.6
     assert world_for(Brief(beside=("rain", "ice")), World()).site.friction == 0.1
     given = world_for(Brief(beside=("rain", "fog")), World(scene=read_scene("rain 20")))
-    assert (str(given.scene.rain), str(given.scene.fog)) == ("20", "50 to 200")
+    assert [str(each.amount) for each in given.scene.weather] == ["50 to 200", "20"]
     none = world_for(Brief(beside=("rain", "fog", "snow")), World(scene=Scene()))
     assert none == World(scene=Scene())
 

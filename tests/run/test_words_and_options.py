@@ -23,7 +23,7 @@ SCENARIOS = {
     "ncap:CPNA light=day": "day",
 }
 """The light that each says; nothing where the day is only usual."""
-CONDITIONS = ("fog", "rain", "clock", "light", "surface", "flow")
+CONDITIONS = ("weather", "clock", "light", "surface", "flow")
 LIGHTS = ("night", "low_sun", "day")
 
 

@@ -36,15 +36,16 @@ from roadgpt.brief.readers.model.vocabulary import (
     usual_key,
     value_of,
 )
-from roadgpt.brief.scene import DOINGS, WEATHER
-from roadgpt.brief.scene import NUMBERS as OF_SCENES
+from roadgpt.brief.scene import usual_weather
+from roadgpt.language.table import MANEUVERS, WEATHER
+from roadgpt.language.table import NUMBERS as OF_SCENES
 
 PIECE = re.compile(
     r"//|\|\||&&|![a-z]+|(?:left|right)(?:\+(?:right|straight))+|[a-z_]+\(|[a-z_]+=|x(?=-?[\d.])|half[12]|\.\.|-?\d+(?:\.\d+)?|[a-z_]+|[;|):,=+]|-(?=\d)"
 )
 UNSAID = {
     **RAINS,
-    **{name: f"{name} {amount_text(amount)}" for name, amount in WEATHER.items()},
+    **{str(name): f"{name} {amount_text(usual_weather(name).amount)}" for name in WEATHER},
     "slippery s=": "slippery mu=0.3 s=",
 }
 """What plans have where a text gives no number, by what stands in the tokens."""
@@ -52,7 +53,7 @@ LISTED = re.compile(r",(?=\s*-?\d)")
 """A comma between numbers of a list; it has no token, so the numbers directly follow each other."""
 NUMERIC = re.compile(r"-?\d+(?:\.\d+)?")
 KEY_OF_CHANGE = re.compile(
-    rf"\b({'|'.join(sorted({number.key for number in OF_SCENES.values()}))}) "
+    rf"\b({'|'.join(sorted({number.key for number in OF_SCENES.values()} | {*WEATHER}))}) "
     r"(?=[=+x-]|\.\.|-?\d|(?:slightly |much )?(?:more|less)\b)"
 )
 """The name of a number of a scene in a plan of changes, "truck: v +5", where a description has "v=5"."""
@@ -104,7 +105,7 @@ def tokens_of(
             key = piece
         elif piece in WEATHER:
             key = f"{piece}="
-        elif is_change and SCENE in out and piece in DOINGS:
+        elif is_change and SCENE in out and piece in MANEUVERS:
             key = usual_key(piece)
         elif is_change and SCENE in out and piece == ":" and key in (f"{name}=" for name in WEATHER):
             pass  # "fog: =50" changes the number of the fog

@@ -9,8 +9,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from roadgpt.brief.scene import LANDS, WEATHER
-from roadgpt.brief.words import SURFACES
+from roadgpt.brief.scene import LANDS
+from roadgpt.language.table import SURFACES, WEATHER
 from roadgpt.reading import read_text
 
 TEXTS: dict[str, dict[str, str]] = tomllib.loads(read_text(Path(__file__).with_name("beside.toml")))
@@ -62,7 +62,8 @@ def networks_in(names: Iterable[str]) -> str:
 def slipperiest(names: Iterable[str]) -> str | None:
     """Returns the slipperiest surface among the names, of which rain makes a road wet; None if there is
     none."""
-    named = {"wet" if each == "rain" else each for each in names} & SURFACES.keys()
+    made = {str(kind): row.surface for kind, row in WEATHER.items() if row.surface}
+    named = {made.get(each, each) for each in names} & SURFACES.keys()
     return min(named, key=lambda each: SURFACES[each].friction, default=None)
 
 
@@ -80,7 +81,7 @@ def surface_remark(
     own = friction_of(names)
     if own is None:
         return ""
-    *more, last = (f"'{name}'" for name in ("rain", *SURFACES) if name in names)
+    *more, last = (f"'{name}'" for name in (*WEATHER, *SURFACES) if name in names and friction_of([name]))
     said = f"{', '.join(more)} and {last}" if more else last
     if friction not in (None, own) and friction == friction_of(others):
         return f"the words say {said}, but the given scene says '{others[0]}': friction is {friction:g}"

@@ -4,8 +4,9 @@ import re
 from typing import NamedTuple
 
 from roadgpt.brief.amount import exactly
-from roadgpt.brief.scene import Land, Landform, Lie
+from roadgpt.brief.scene import Land, Lie
 from roadgpt.brief.words import LandKind
+from roadgpt.language.names import Landform
 
 KINDS: dict[str, LandKind] = {
     "flat": "flat", "level": "flat", "plain": "flat", "rolling": "rolling", "gentle": "rolling",

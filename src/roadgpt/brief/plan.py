@@ -41,24 +41,16 @@ from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Frozen, exact
 from roadgpt.brief.normal import BUMPS
 from roadgpt.brief.refusal import refused
 from roadgpt.brief.scene import (
-    DOINGS,
-    NUMBERS,
-    SPOTS,
-    WEATHER,
     Action,
-    ActorKind,
-    Flow,
+    Air,
     Land,
-    Landform,
     Lie,
-    Light,
     Mark,
     Patch,
     Person,
     Role,
     Scene,
-    Surface,
-    Where,
+    usual_weather,
 )
 from roadgpt.brief.words import (
     LARGEST_MAP,
@@ -73,6 +65,8 @@ from roadgpt.brief.words import (
     Surroundings,
 )
 from roadgpt.errors import BriefError
+from roadgpt.language.names import Flow, Light, Surface, Where
+from roadgpt.language.table import LANDFORMS, MANEUVERS, NUMBERS, PLACES, ROAD_USERS, WEATHER
 
 KINDS = frozenset(get_args(Kind))
 JUNCTIONS: frozenset[str] = frozenset(get_args(JunctionKind))
@@ -107,7 +101,7 @@ OF_WHOLE = {
 }
 """The fields of a Brief that can be asked of a whole route, with their names in plans; a map has none of the
 last three."""
-PLACES = ("starts", "ends")
+ENDS = ("starts", "ends")
 INNER = "(starts|ends|beside)"
 ALIKE = "alike"
 """A flag of a road. In older plans, and for a whole route or map, the word stands in ``beside(...)``."""
@@ -271,7 +265,7 @@ CLOCK = "clock"
 CONDITIONS = _words(flow=Flow, light=Light, surface=Surface, land=LandKind)
 MARK = re.compile(
     r"\b(?:(?:after|before|in) (?:turn|junction) (?:-1|[1-9]\d?)|(?:after|with) "
-    rf"(?:{'|'.join(get_args(ActorKind))}) [1-9]\d? (?:{'|'.join(DOINGS)}))(?!\S)"
+    rf"(?:{'|'.join(ROAD_USERS)}) [1-9]\d? (?:{'|'.join(MANEUVERS)}))(?!\S)"
 )
 """A part of the route, or what another actor does, as in "after turn 1" and "with truck 1 brake"."""
 
@@ -306,7 +300,7 @@ def _wishes(brief: Brief) -> list[str]:
     if ONE_WAY in wishes:  # it stands in the place of the number
         wishes.remove(ONE_WAY)
         wishes[wishes.index("against=0")] = ONE_WAY
-    wishes += [f"{name}({_clause(clause)})" for name in PLACES if (clause := getattr(brief, name))]
+    wishes += [f"{name}({_clause(clause)})" for name in ENDS if (clause := getattr(brief, name))]
     wishes += [f"beside({', '.join(brief.beside)})"] if brief.beside else []
     wishes += [f"centre={brief.centre}"] if brief.centre is not None else []
     wishes += [f"map_size={brief.map_size:g}"] if brief.map_size is not None else []
@@ -522,7 +516,7 @@ def _read_words(fields: dict[str, object], words: Iterable[str], language: _Lang
     return fields
 
 
-def _set(fields: dict[str, object], name: str, value: object) -> None:
+def _set(fields: dict[str, Any], name: str, value: object) -> None:
     if name in fields:
         said = f": '{value}'" if isinstance(value, Amount | str) else ""
         raise BriefError(f"a plan gives {name} twice{said}; give it once")
@@ -547,7 +541,7 @@ def scene_plan(scene: Scene) -> str:
         line.append(f"{actor}: {actions}" if actions else actor)
     line += [scene.flow or "", f"oncoming {scene.oncoming}" if scene.oncoming else ""]
     line += [f"parked {side}" for side in scene.parked]
-    line += [f"{name} {amount_text(number)}" for name in WEATHER if (number := getattr(scene, name))]
+    line += [f"{air.kind} {amount_text(air.amount)}" for air in scene.weather]
     patches = [" ".join([SLIPPERY, *_written(patch, A_PATCH)]) for patch in scene.slippery]
     lands = [" ".join([each.kind, *_times(each.count), *_written(each, A_LAND)]) for each in scene.landscape]
     clock = f"{CLOCK} {scene.clock}" if scene.clock else ""
@@ -572,7 +566,7 @@ def read_scene(text: str) -> Scene:
 def scene_fields(text: str) -> dict[str, object]:
     """Returns the fields of the scene that stands in a plan, which are not yet checked against each other."""
     fields: dict[str, object] = {}
-    actors, patches, lands, rows = [], [], [], set[str]()
+    actors, patches, lands, rows, airs = [], [], [], set[str](), dict[str, Air]()
     for part in filter(None, map(str.strip, text.split(";"))):
         first, *words = part.replace(":", " : ").split()
         if first == "parked":
@@ -584,16 +578,18 @@ def scene_fields(text: str) -> dict[str, object]:
             rows.add(words[0])
         elif first == "oncoming" and len(words) == 1 and words[0] in (*get_args(Flow), "none"):
             _set(fields, first, words[0])
-        elif first in (*get_args(ActorKind), *SPOTS):
+        elif first in (*ROAD_USERS, *PLACES):
             actors.append(_read_role(part))
         elif first == TESTED_CAR:
             _read_words(fields, words, ITSELF)
         elif first == SLIPPERY:
             patches.append(_made(Patch, _read_words({}, words, A_PATCH), part))
-        elif first in get_args(Landform):
+        elif first in LANDFORMS:
             lands.append(_made(Land, _read_words({"kind": first}, words, A_LAND), part))
         elif first in WEATHER and len(words) < 2:
-            _set(fields, first, read_amount(words[0]) if words else WEATHER[first])
+            usual = next(usual_weather(kind) for kind in WEATHER if kind == first)
+            amount = {"amount": read_amount(words[0])} if words else dict[str, object]()
+            _set(airs, first, _made(Air, {**dict(usual), **amount}, part))
         elif first == CLOCK:
             if not re.fullmatch(r"([01]\d|2[0-3]):[0-5]\d", time := part.partition(" ")[2].strip()):
                 raise BriefError(f"'{part[:40]}' is no time; write for example {CLOCK} 14:15")
@@ -601,13 +597,14 @@ def scene_fields(text: str) -> dict[str, object]:
         elif first in CONDITIONS and not words:
             _set(fields, *CONDITIONS[first])
         else:
-            known = (*get_args(ActorKind), TESTED_CAR, "oncoming", "parked", SLIPPERY, *WEATHER, CLOCK)
-            known += (*CONDITIONS, *get_args(Landform))
+            known = (*ROAD_USERS, TESTED_CAR, "oncoming", "parked", SLIPPERY, *WEATHER, CLOCK)
+            known += (*CONDITIONS, *LANDFORMS)
             raise BriefError(
                 f"a scene has no '{part[:40]}'; its parts, divided by ;, begin with one of {', '.join(known)}"
             )
-    of_all: tuple[list[Any], ...] = (actors, patches, lands, sorted(rows))
-    several = zip(("actors", "slippery", "landscape", "parked"), of_all, strict=True)
+    air = [airs[kind] for kind in WEATHER if kind in airs]
+    of_all: tuple[list[Any], ...] = (actors, patches, lands, sorted(rows), air)
+    several = zip(("actors", "slippery", "landscape", "parked", "weather"), of_all, strict=True)
     return fields | {name: tuple(each) for name, each in several if each}
 
 
@@ -615,12 +612,12 @@ def _read_role(text: str) -> Role:
     head, _, rest = text.partition(":")
     fields: dict[str, object] = {}
     kind, *words = _without_mark(head, fields)
-    if kind not in get_args(ActorKind):
+    if kind not in ROAD_USERS:
         kind, words = "car", [kind, *words]
     _read_words(fields, words, AN_ACTOR)
     if "where" not in fields:
         raise BriefError(
-            f"'{text[:40]}' does not say where the {kind} is at first; there are {', '.join(SPOTS)}"
+            f"'{text[:40]}' does not say where the {kind} is at first; there are {', '.join(PLACES)}"
         )
     actions = tuple(read_action(part) for part in rest.split(",") if part.strip())
     return _made(Role, {"kind": kind, **fields, "actions": actions}, text)
@@ -630,9 +627,9 @@ def read_action(text: str) -> Action:
     """Returns the action that a plan describes, such as "brake 6 after turn 1"."""
     fields: dict[str, object] = {}
     what, *words = _without_mark(text, fields) or [""]
-    doing = next((doing for name, doing in DOINGS.items() if name == what), None)
+    doing = next((doing for name, doing in MANEUVERS.items() if name == what), None)
     if doing is None:
-        raise BriefError(f"a plan has no manoeuvre '{what[:40]}'; there are {', '.join(DOINGS)}")
+        raise BriefError(f"a plan has no manoeuvre '{what[:40]}'; there are {', '.join(MANEUVERS)}")
     for word in words:
         if word[0] in "0123456789." and doing.numbers:
             _set(fields, doing.numbers[0], read_amount(word))

@@ -5,8 +5,8 @@
 
 from roadgpt.brief.beside import NOT_BUILT, ON_ROUTES, SAID_OTHERWISE, TEXTS, networks_in
 from roadgpt.brief.model import Brief
-from roadgpt.brief.words import SURFACES
 from roadgpt.errors import BriefError
+from roadgpt.language.table import SURFACES
 
 MOST_CHARACTERS = 6000
 """The largest number of characters in a description."""

@@ -17,8 +17,9 @@ from typing import Any, Literal, NamedTuple
 
 from roadgpt.brief.model import mirrored_scene
 from roadgpt.brief.plan import read_scene
-from roadgpt.brief.scene import NUMBERS, SIZES, Scene
+from roadgpt.brief.scene import Scene
 from roadgpt.errors import BriefError, UsageError
+from roadgpt.language.table import NUMBERS, SIZES
 from roadgpt.reading import read_text
 
 Grid = Literal["nominal", "standard"]
@@ -90,7 +91,7 @@ class Scenario(NamedTuple):
             said = "a number is divided by 0" if isinstance(error, ZeroDivisionError) else str(error)
             raise UsageError(f"the scenario '{self}' is not possible: {said}") from error
         own = mirrored_scene(own) if left_hand else own
-        told, added = (each.model_dump(exclude_defaults=True) for each in (own, other))
+        told, added = own.told, other.told
         for name, value in added.items():
             if told.get(name, value) != value or (name == "light" in self.given and name not in told):
                 raise UsageError(
@@ -117,7 +118,7 @@ class Scenario(NamedTuple):
     @property
     def fault(self) -> str:
         """A sentence about a speed that nobody can have, or else nothing."""
-        _, least, most, *_ = NUMBERS["speed"]
+        least, most = NUMBERS["speed"].least, NUMBERS["speed"].most
         for formula in SPEEDS.findall(self.scene):
             if not least <= (speed := _computed(_parsed(formula[1:-1]).body, self.values)) <= most:
                 named = [name for name in self.values if re.search(rf"\b{name}\b", formula)]

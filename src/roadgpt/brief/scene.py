@@ -4,53 +4,33 @@ It is told in the terms of OpenSCENARIO: somebody is somewhere at first, and the
 another, each begun by a condition. A number may be a range, from which each drive draws."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Annotated, Literal, NamedTuple, Self, get_args
+from typing import Annotated, Any, Literal, Self, get_args
 
 from pydantic import AfterValidator, StringConstraints, model_validator
 
 from roadgpt.brief.amount import Amount, Frozen, exactly, span
 from roadgpt.brief.junctions import Side
-from roadgpt.brief.words import MOST_LANES, SURFACES, LandKind
+from roadgpt.brief.words import MOST_LANES, LandKind
+from roadgpt.language.names import ActorKind, Flow, Landform, Light, Surface, WeatherKind, What, Where
+from roadgpt.language.table import (
+    CUES,
+    FLOWS,
+    LANDFORMS,
+    LIGHTS,
+    MANEUVERS,
+    MOVING,
+    NUMBERS,
+    PLACES,
+    SURFACES,
+    WEATHER,
+    one_of,
+    several_of,
+)
 
-ActorKind = Literal[
-    "car", "van", "truck", "bus", "motorcycle", "bicycle", "adult", "child", "animal",
-    "cones", "barrier", "lost_load",
-]  # fmt: skip
-Flow = Literal["light", "medium", "dense"]
-Light = Literal["night", "low_sun"]
 Clock = Annotated[str, StringConstraints(pattern=r"^([01][0-9]|2[0-3]):[0-5][0-9]$")]
 Person = Literal["robot"]
-Surface = Literal["wet", "snow", "ice"]
-Where = Literal[
-    "ahead", "behind", "lane", "far", "oncoming", "crossing", "parked", "ramp", "junction", "crosswalk",
-    "beside", "roundabout",
-]  # fmt: skip
-What = Literal[
-    "keep", "brake", "stop", "speed", "follow", "open_gap", "swerve", "drift", "cut_in", "cut_out",
-    "change_lane", "overtake", "merge", "pull_out", "turn_off", "turn_in", "turn_across", "cross",
-    "run_light", "run_sign", "reverse", "wrong_way",
-]  # fmt: skip
-Landform = Literal[
-    "valley", "ridge", "lake", "river", "coast", "forest", "town",
-    "bridge", "tunnel", "cutting", "embankment", "tree_lined",
-]  # fmt: skip
 Lie = Literal["along", "across", "through"]
 LAND_KINDS: tuple[LandKind, ...] = get_args(LandKind)
-FLOWS: Mapping[Flow, int] = {"light": 5, "medium": 12, "dense": 25}
-"""How many vehicles drive on each km of a lane."""
-USUAL_SPEEDS: Mapping[str, int] = {"adult": 5, "child": 5, "bicycle": 15, "animal": 20}
-"""Speeds in km/h: those of Euro NCAP's persons (CPNA) and bicycle (CBNA); that of the animal is ours."""
-USUAL_LENGTHS: Mapping[str, float] = {"bridge": 50.0, "tunnel": 80.0, "cutting": 60.0, "embankment": 60.0}
-USUAL_AWAY: Mapping[str, float] = {"river": 26.0, "lake": 30.0, "coast": 32.0, "ridge": 85.0}
-"""Metres along the road, and from it, where words give none."""
-USUAL_BRAKING: Mapping[str, float] = {"brake": 6.0, "stop": 3.0}
-"""Decelerations in m/s2 where nothing is said."""
-VEHICLES: tuple[ActorKind, ...] = ("car", "van", "truck", "bus", "motorcycle", "bicycle")
-MOVING: tuple[ActorKind, ...] = (*VEHICLES, "adult", "child", "animal")
-ANYTHING: tuple[ActorKind, ...] = get_args(ActorKind)
-SEVERAL = {"bus": "buses", "child": "children", "cones": "cones"}
-"""The plurals that are not made with an s."""
-ALONG = ("ahead", "behind", "lane", "far", "oncoming")
 LEAVES = ("cut_out", "change_lane")
 ACCELERATES = {"decel", "accel", "lateral"}  # numbers with which a scene prescribes an acceleration
 HEAD_ON: tuple[What, ...] = ("drift", "wrong_way", "overtake")
@@ -60,110 +40,6 @@ ON_ITS_WAY: tuple[What, ...] = ("merge", "turn_in", "turn_across", "cross", "run
 MOST_MORE = 3
 """How many more of a kind there are at most where a scene says "2 or more"."""
 LANES_AWAY = {"lane": 1, "far": 2}
-ACROSS = ("crossing", "crosswalk", "junction", "beside")
-ANYWHERE = get_args(Where)
-
-
-def one_of(kind: ActorKind) -> str:
-    """Returns one of a kind in words, such as "an adult"."""
-    article = "" if kind == "cones" else "an " if kind[0] == "a" else "a "
-    return article + kind.replace("_", " ")
-
-
-class Size(NamedTuple):
-    """The box of an actor in metres."""
-
-    length: float
-    width: float
-    height: float
-
-
-SIZES: Mapping[ActorKind, Size] = {
-    "car": Size(4.7, 1.8, 1.5),
-    "van": Size(6.5, 2.16, 2.86),
-    "truck": Size(12.0, 2.5, 3.6),
-    "bus": Size(12.0, 2.5, 3.4),
-    "motorcycle": Size(2.2, 0.9, 1.5),
-    "bicycle": Size(1.9, 0.65, 1.86),
-    "adult": Size(0.6, 0.5, 1.8),
-    "child": Size(0.5, 0.4, 1.15),
-    "animal": Size(1.5, 0.5, 1.2),
-    "cones": Size(0.4, 0.4, 0.75),
-    "barrier": Size(0.5, 2.0, 1.0),
-    "lost_load": Size(0.8, 0.6, 0.4),
-}
-"""Van, bus and motorcycle: SUMO, vehicle type parameter defaults (delivery, bus, motorcycle). Truck: the
-longest single vehicle of Directive 96/53/EC, Annex I; car: between the 4.3 and 5.0 m of the vehicles in UN
-R157's simulations. Bicycle, adult, child: Euro NCAP's targets EBT, EPTa and EPTc. The animal is a roe deer.
-"""
-
-
-class Spot(NamedTuple):
-    """Where somebody can be at first."""
-
-    said: str
-    before_side: str = ""
-    """The words before its side; empty if it has none."""
-    who: tuple[ActorKind, ...] = MOVING
-
-
-SPOTS: Mapping[Where, Spot] = {
-    "ahead": Spot("ahead", who=ANYTHING),
-    "behind": Spot("behind"),
-    "lane": Spot("in the next lane", "to the", ANYTHING),
-    "far": Spot("beyond the next lane", "to the", ANYTHING),
-    "oncoming": Spot("oncoming"),
-    "crossing": Spot("crossing", "from the"),
-    "parked": Spot("parked", "on the", VEHICLES),
-    "ramp": Spot("on the ramp", who=VEHICLES),
-    "junction": Spot("at the junction", "from the", VEHICLES),
-    "crosswalk": Spot("on the crosswalk", "from the"),
-    "beside": Spot("beside the road", "on the", ANYTHING),
-    "roundabout": Spot("in the roundabout", who=VEHICLES),
-}
-
-
-class Number(NamedTuple):
-    """A number of a scene: its key in plans, the least and the most that is possible, and its words."""
-
-    key: str
-    least: float
-    most: float
-    said: str
-    where: tuple[str, ...] = ANYWHERE
-    """Where somebody is at first who can have it."""
-
-
-NUMBERS: Mapping[str, Number] = {
-    "decel": Number("decel", 0.1, 12, "with {} m/s2"),
-    "to": Number("to", 0, 250, "to {} km/h"),
-    "lateral": Number("lat", 0.1, 5, "at {} m/s sideways"),
-    "shift": Number("shift", 0.1, 10, "by {} metres"),
-    "accel": Number("accel", -12, 12, "accelerating with {} m/s2"),
-    "duration": Number("for", 0.1, 600, "for {} seconds"),
-    "gap": Number("gap", -200, 1000, "at a gap of {} metres", (*ALONG, "parked", "beside", "crossing")),
-    "headway": Number("thw", 0, 20, "at a headway of {} seconds", ("ahead", "behind")),
-    "lead": Number("lead", -200, 1000, "with its middle {} metres ahead of the tested car's", ALONG),
-    "station": Number("s", 0, 40_000, "at {} metres from the start"),
-    "time": Number("time", 0, 3600, "after {} seconds"),
-    "distance": Number("dist", 0, 40_000, "after {} metres"),
-    "ttc": Number("ttc", 0, 60, "at a time to collision of {} seconds"),
-    "speed": Number("v", 0, 250, "at {} km/h"),
-    "faster": Number("dv", -250, 250, "at {} km/h more than the tested car", (*ALONG, "ramp")),
-    "overlap": Number("overlap", 0, 100, "covering {} percent of the tested car's width", ALONG),
-    "impact": Number("impact", -200, 300, "aimed at {} percent of the tested car's width", (*ALONG, *ACROSS)),
-    "offset": Number(
-        "t", -10, 10, "{} metres left of the lane's middle", (*ALONG, "ramp", "roundabout", "junction")
-    ),
-    "away": Number("away", 0, 200, "{} metres from the tested car's path", ACROSS),
-    "fog": Number("fog", 5, 1000, "fog with a visual range of {} metres"),
-    "rain": Number("rain", 0.1, 200, "rain of {} mm/h"),
-    "friction": Number("mu", 0.05, 2, "with a friction of {}"),
-    "length": Number("len", 1, 10_000, "on {} metres"),
-}
-CUES = ("time", "distance", "ttc", "headway", "gap", "station", "at")
-"""The conditions on which an action begins. Time and distance are those of the tested car since its start;
-the station is that of whoever acts, along the lane of the tested car."""
 ONE_OF = (
     ("gap", "headway", "lead", "station"),
     ("headway", "lead", "station", "at"),
@@ -171,45 +47,6 @@ ONE_OF = (
     ("overlap", "impact", "offset"),
     CUES,  # of actions only
 )
-
-
-class Doing(NamedTuple):
-    """Something that can be done."""
-
-    said: str
-    numbers: tuple[str, ...] = ()
-    """Those that it can have; the first needs no key."""
-    starts: tuple[str, ...] = ANYWHERE
-    """Where somebody is at first who can begin with it."""
-    has_side: bool = False
-    who: tuple[ActorKind, ...] = VEHICLES
-
-
-SIDEWAYS = ("lateral", "duration", "accel")
-DOINGS: Mapping[What, Doing] = {
-    "keep": Doing("keeps its speed", ("duration",), who=MOVING),
-    "brake": Doing("brakes", ("decel", "to", "duration"), who=MOVING),
-    "stop": Doing("stops", ("decel", "duration"), who=MOVING),
-    "speed": Doing("changes its speed", ("to", "accel", "duration"), who=MOVING),
-    "follow": Doing("follows the tested car", ("duration",), ("behind",)),
-    "open_gap": Doing("opens a gap", ("duration",), ALONG),
-    "swerve": Doing("swerves within its lane", ("shift", *SIDEWAYS), ALONG),
-    "drift": Doing("drifts", ("shift", *SIDEWAYS), ALONG, has_side=True),
-    "cut_in": Doing("cuts in", SIDEWAYS, ("lane", "far")),
-    "cut_out": Doing("cuts out", SIDEWAYS, ("ahead", "behind"), has_side=True),
-    "change_lane": Doing("changes lane", SIDEWAYS, ALONG, has_side=True),
-    "overtake": Doing("overtakes", ("to", *SIDEWAYS), ("behind", "lane", "far", "oncoming")),
-    "merge": Doing("merges", SIDEWAYS, ("ramp",)),
-    "pull_out": Doing("pulls out", ("to", *SIDEWAYS), ("parked", "beside")),
-    "turn_off": Doing("turns off", ("to",), (*ALONG, "roundabout"), has_side=True),
-    "turn_in": Doing("turns in", ("to",), ACROSS),
-    "turn_across": Doing("turns across", ("to",), ("oncoming", "junction")),
-    "cross": Doing("crosses", ("to", "accel"), ACROSS, who=MOVING),
-    "run_light": Doing("runs the red light", starts=("junction",)),
-    "run_sign": Doing("does not give way", starts=("junction",)),
-    "reverse": Doing("reverses", ("to", "duration"), ("ahead", "parked", "beside")),
-    "wrong_way": Doing("drives the wrong way", ("duration",), (*ALONG, "ramp")),
-}
 
 
 class Mark(Frozen):
@@ -230,7 +67,7 @@ class Mark(Frozen):
         """The condition in words."""
         if self.what is None:
             return f"{self.word} the last {self.of}" if self.number < 0 else str(self)
-        said = f"{self.of.replace('_', ' ')} {self.number} {DOINGS[self.what].said}"
+        said = f"{self.of.replace('_', ' ')} {self.number} {MANEUVERS[self.what].said}"
         return f"{'when' if self.word == 'with' else self.word} {said}"
 
 
@@ -255,17 +92,17 @@ class Action(Frozen):
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
-        doing = DOINGS[self.what]
+        doing = MANEUVERS[self.what]
         for field in _given(self, self.what):
             if field in NUMBERS and field not in (*doing.numbers, *CUES):
                 raise ValueError(f"'{self.what}' has no {NUMBERS[field].key}=; leave it out")
-        if self.side and not doing.has_side:
+        if self.side and not doing.side:
             raise ValueError(f"'{self.what}' has no side; leave '{self.side}' out")
         return self
 
     def __str__(self) -> str:
         side = [f"to the {self.side}"] if self.side else []
-        return " ".join([DOINGS[self.what].said, *side, *_said(self)])
+        return " ".join([MANEUVERS[self.what].said, *side, *_said(self)])
 
 
 class Role(Frozen):
@@ -297,11 +134,11 @@ class Role(Frozen):
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
-        one, spot = one_of(self.kind), SPOTS[self.where]
+        one, spot = one_of(self.kind), PLACES[self.where]
         first = self.actions[0] if self.actions else Action(what="keep")
         if self.kind not in spot.who:
             raise ValueError(f"{one} cannot be {spot.said}; give another place")
-        if self.side and (not spot.before_side or (self.side == "opposite" and self.where != "junction")):
+        if self.side and (not spot.side or (self.side == "opposite" and self.where != "junction")):
             raise ValueError(f"'{self.where}' has no side '{self.side}'; leave it out")
         if not {self.count.lo, self.count.hi} <= {None, *range(1, 51)}:
             raise ValueError(f"1 to 50 of a kind can be in one place, not {self.count}")
@@ -319,9 +156,9 @@ class Role(Frozen):
         if (self.kind not in MOVING or self.where == "parked") and (self.speed or self.faster):
             raise ValueError(f"{one} {'parked ' * (self.kind in MOVING)}stands; leave its speed out")
         for action in self.actions:
-            if self.kind not in DOINGS[action.what].who:
+            if self.kind not in MANEUVERS[action.what].who:
                 raise ValueError(f"{one} has no '{action.what}'; leave it out")
-            what, starts = action.what, DOINGS[action.what].starts
+            what, starts = action.what, MANEUVERS[action.what].starts
             if self.where not in starts and (action is first or what in ON_ITS_WAY):
                 raise ValueError(f"who is {spot.said} cannot {what}; that begins from: {', '.join(starts)}")
         if first.what == "brake" and span(first.to).lo > span(self.speed).hi:
@@ -342,11 +179,10 @@ class Role(Frozen):
         return next((each for each in ("turn_across", "turn_in", "merge") if each in whats), "cross")
 
     def __str__(self) -> str:
-        spot = SPOTS[self.where]
-        side = f" {spot.before_side} {self.side}{' side' * (self.side == 'opposite')}" if self.side else ""
+        spot = PLACES[self.where]
+        side = f" {spot.side} {self.side}{' side' * (self.side == 'opposite')}" if self.side else ""
         is_one = self.count == exactly(1)
-        many = SEVERAL.get(self.kind, f"{self.kind}s").replace("_", " ")
-        some = one_of(self.kind) if is_one else f"{self.count} {many}"
+        some = one_of(self.kind) if is_one else f"{self.count} {several_of(self.kind)}"
         said = ", ".join([f"{some} {spot.said}{side}", *_said(self)])
         who = "that" if is_one else "each of which"
         return f"{said}, {who} {', then '.join(map(str, self.actions))}" if self.actions else said
@@ -368,9 +204,6 @@ class Patch(Frozen):
         return " ".join(["a slippery place", *_said(self)])
 
 
-STRUCTURES: tuple[Landform, ...] = ("bridge", "tunnel", "cutting", "embankment")
-
-
 class Land(Frozen):
     """Something of the landscape that the road lies in, or several alike."""
 
@@ -386,12 +219,12 @@ class Land(Frozen):
     @model_validator(mode="after")
     def _fits(self) -> Self:
         _given(self, self.kind)
-        is_beside = self.kind in USUAL_AWAY and self.lie not in ("across", "through") and not self.is_crest
+        is_beside = LANDFORMS[self.kind].away and self.lie not in ("across", "through") and not self.is_crest
         if self.away and not is_beside:
             raise ValueError(f"'{self.kind}' has no away= here; leave it out")
         if not span(self.count).lo >= 1:
             raise ValueError(f"a landscape has one {self.kind} or more, not {self.count}; leave it out")
-        if self.kind in STRUCTURES and (self.lie or self.side):
+        if LANDFORMS[self.kind].structure and (self.lie or self.side):
             raise ValueError(f"'{self.kind}' has no {self.lie or self.side}; leave it out")
         return self
 
@@ -401,10 +234,10 @@ class Land(Frozen):
         return self.kind == "ridge" and self.lie == "along" and self.side is None
 
     def __str__(self) -> str:
-        if self.kind == "tree_lined":
-            return "an avenue of trees"
-        article = "an" if self.kind == "embankment" else "a"
-        some = f"{article} {self.kind}" if self.count == exactly(1) else f"{self.count} {self.kind}s"
+        row = LANDFORMS[self.kind]
+        if row.said:
+            return row.said
+        some = f"{row.article} {self.kind}" if self.count == exactly(1) else f"{self.count} {self.kind}s"
         if self.is_crest:
             return f"along the crest of {some}"
         lie = {"along": "along the road", "across": "to cross", "through": "to go through"}.get(
@@ -414,6 +247,23 @@ class Land(Frozen):
         long = f"{self.length} metres long" if self.length else ""
         away = f"{self.away} metres away" if self.away else ""
         return " ".join(filter(None, [some, lie, side, long, away]))
+
+
+class Air(Frozen):
+    """What falls or floats, such as rain."""
+
+    kind: WeatherKind
+    amount: Amount
+    """The visual range in metres, or how much falls in mm/h."""
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        row = WEATHER[self.kind]
+        _check_ends(self.kind, self.amount, row.least, row.most, "a scene")
+        return self
+
+    def __str__(self) -> str:
+        return WEATHER[self.kind].said.format(self.amount)
 
 
 class Scene(Frozen):
@@ -435,10 +285,8 @@ class Scene(Frozen):
     """The same for the oncoming lanes; None: as ``flow``."""
     parked: Annotated[tuple[Side, ...], AfterValidator(lambda sides: tuple(sorted({*sides})))] = ()
     """The sides on which cars are parked in a row."""
-    fog: Amount | None = None
-    """The visual range in metres."""
-    rain: Amount | None = None
-    """In mm/h."""
+    weather: tuple[Air, ...] = ()
+    """What falls or floats, each kind once, in the order of the table."""
     clock: Clock | None = None
     """The local time as HH:MM. It says nothing about the light."""
     light: Light | None = None
@@ -449,9 +297,21 @@ class Scene(Frozen):
     """How high the hills of the land are; None: as ``hills`` says."""
     landscape: tuple[Land, ...] = ()
 
+    @model_validator(mode="before")
+    @classmethod
+    def _of_older_records(cls, data: Any) -> Any:
+        """Reads scenes with a field for each kind of weather, as ``told`` has it and older records do."""
+        if not isinstance(data, dict) or not any(data.get(kind) for kind in WEATHER):
+            return data
+        air = [{"kind": kind, "amount": data[kind]} for kind in WEATHER if data.get(kind)]
+        return {name: value for name, value in data.items() if name not in WEATHER} | {"weather": air}
+
     @model_validator(mode="after")
     def _fits(self) -> Self:
         _given(self, "a scene")
+        kinds = [each.kind for each in self.weather]
+        if kinds != [kind for kind in WEATHER if kind in kinds]:
+            raise ValueError("a scene has each kind of weather once, in the order of the table")
         if self.lane is not None and not 1 <= abs(self.lane) <= MOST_LANES:
             raise ValueError(
                 f"lanes count from 1 to {MOST_LANES} from the kerb, or from -1 from the innermost one, and"
@@ -522,13 +382,32 @@ class Scene(Frozen):
 
     @property
     def surfaces(self) -> tuple[str, ...]:
-        """What sets the friction: the surface that is named, or else rain."""
-        return (self.surface,) if self.surface else ("rain",) if self.rain else ()
+        """What sets the friction: the surface that is named, or else what falls."""
+        falls = tuple(each.kind for each in self.weather if WEATHER[each.kind].surface)
+        return (self.surface,) if self.surface else falls
+
+    @property
+    def told(self) -> dict[str, Any]:
+        """What it says, as data, with each kind of weather by itself; ``model_validate`` reads it back."""
+        data = self.model_dump(exclude_defaults=True)
+        airs = data.pop("weather", ())
+        return data | {air["kind"]: air["amount"] for air in airs}
+
+    def amount_of(self, kind: WeatherKind) -> Amount | None:
+        """Returns how much there is of a kind of weather; None for none."""
+        return next((each.amount for each in self.weather if each.kind == kind), None)
+
+    def with_weather(self, kind: WeatherKind, amount: Amount | None) -> Self:
+        """Returns the scene with so much of a kind of weather; None for none."""
+        amounts = {each.kind: each.amount for each in self.weather} | {kind: amount}
+        air = tuple(Air(kind=each, amount=found) for each in WEATHER if (found := amounts.get(each)))
+        return self.model_copy(update={"weather": air})
 
 
-WEATHER = {"fog": Amount(lo=50, hi=200), "rain": Amount(lo=2.5, hi=7.6)}
-"""What fog and rain are without a number: thick fog, and the moderate rain of the Glossary of Meteorology."""
-LIGHTS: Mapping[Light, str] = {"night": "night", "low_sun": "a low sun ahead"}
+def usual_weather(kind: WeatherKind) -> Air:
+    """Returns a kind of weather without a number."""
+    lo, hi = WEATHER[kind].usual
+    return Air(kind=kind, amount=Amount(lo=lo, hi=hi))
 
 
 def _given(thing: Frozen, name: str) -> list[str]:
@@ -538,9 +417,8 @@ def _given(thing: Frozen, name: str) -> list[str]:
     given = {each: value for each in names if (value := getattr(thing, each, None)) is not None}
     for field, amount in given.items():
         if isinstance(amount, Amount):
-            key, least, most, *_ = NUMBERS[field]
-            if any(end is not None and not least <= end <= most for end in (amount.lo, amount.hi)):
-                raise ValueError(f"{key} of {name} is from {least:g} to {most:g}, not {amount}")
+            number = NUMBERS[field]
+            _check_ends(number.key, amount, number.least, number.most, name)
     for fields in ONE_OF[:-1] if isinstance(thing, Role) else ONE_OF:
         both = [
             NUMBERS[each].key if each in NUMBERS else str(given[each]) for each in given if each in fields
@@ -548,6 +426,11 @@ def _given(thing: Frozen, name: str) -> list[str]:
         if len(both) > 1:
             raise ValueError(f"{name} has '{both[0]}' and '{both[1]}'; give one of them")
     return [*given]
+
+
+def _check_ends(key: str, amount: Amount, least: float, most: float, name: str) -> None:
+    if any(end is not None and not least <= end <= most for end in (amount.lo, amount.hi)):
+        raise ValueError(f"{key} of {name} is from {least:g} to {most:g}, not {amount}")
 
 
 def _said(thing: Frozen) -> list[str]:
@@ -573,10 +456,11 @@ LANDS: Mapping[str, Land] = {
 def with_named(scene: Scene, beside: Sequence[str]) -> Scene:
     """Returns a scene with the landscape and the weather that the names in ``Brief.beside`` mean, if it has
     none itself."""
-    meant: dict[str, object] = {name: WEATHER[name] for name in beside if name in WEATHER}
-    if lands := tuple(LANDS[name] for name in beside if name in LANDS):
-        meant["landscape"] = lands
-    return scene.model_copy(update={name: each for name, each in meant.items() if not getattr(scene, name)})
+    for kind in WEATHER:
+        if kind in beside and not scene.amount_of(kind):
+            scene = scene.with_weather(kind, usual_weather(kind).amount)
+    lands = tuple(LANDS[name] for name in beside if name in LANDS)
+    return scene if scene.landscape or not lands else scene.model_copy(update={"landscape": lands})
 
 
 def land_remark(scene: Scene) -> str:
@@ -604,7 +488,7 @@ def parts_said(scene: Scene) -> Iterator[str]:
             yield f"{flow.replace('none', 'no')} {name}{density}"
     if scene.parked:
         yield f"cars parked on {'both sides' if len(scene.parked) > 1 else f'the {scene.parked[0]}'}"
-    yield from _said(scene.model_copy(update={"speed": None}))
+    yield from map(str, scene.weather)
     if scene.clock:
         yield f"at {scene.clock}"
     if scene.light:

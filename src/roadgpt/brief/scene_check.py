@@ -6,9 +6,11 @@ from math import inf
 from roadgpt.brief.junctions import LANE_KINDS
 from roadgpt.brief.model import Brief, span
 from roadgpt.brief.outline import outline
-from roadgpt.brief.scene import FLOWS, LEAVES, Scene, Where
+from roadgpt.brief.scene import LEAVES, Scene
 from roadgpt.brief.scene_places import with_places
 from roadgpt.errors import BriefError
+from roadgpt.language.names import Where
+from roadgpt.language.table import FLOWS
 
 NEEDS: Mapping[Where, str] = {
     "lane": "two lanes in its direction; write lanes=2",

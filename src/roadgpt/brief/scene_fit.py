@@ -16,12 +16,13 @@ from roadgpt.brief.model import Brief, Clause, span
 from roadgpt.brief.normal import STRAIGHT
 from roadgpt.brief.outline import outline
 from roadgpt.brief.ranges import Range
-from roadgpt.brief.scene import ACROSS, HEAD_ON, LEAVES, MOST_MORE, MOVING, USUAL_SPEEDS, Action, Role, Scene
+from roadgpt.brief.scene import HEAD_ON, LEAVES, MOST_MORE, Action, Role, Scene
 from roadgpt.brief.scene_check import check_scene
 from roadgpt.brief.scene_junctions import comes_to_junction
 from roadgpt.brief.scene_places import with_places
 from roadgpt.brief.words import MOTORWAY_RADIUS
 from roadgpt.errors import BriefError
+from roadgpt.language.table import ACROSS, MOVING, SIZES, USUAL_SPEEDS
 
 ROLLS = 4.0  # s at speed before anything happens
 STOPS, ASIDE = 4.0, 6.0  # m/s2: with which the tested car can stop, and that it can use sideways
@@ -115,7 +116,7 @@ def _until_met(scene: Scene, speed: float) -> float:
 def _row(role: Role) -> float:
     """Returns how many metres several alike in the tested car's lane are long, and what is uncovered."""
     count = (role.count.hi or span(role.count).lo + MOST_MORE) if role.where == "ahead" else 1
-    one = LONG if role.kind in ("truck", "bus") else SHORT
+    one = LONG if SIZES[role.kind].length > SHORT else SHORT
     leaves = bool(role.actions) and role.actions[0].what in LEAVES
     return (count - 1) * one + leaves * UNCOVERED
 

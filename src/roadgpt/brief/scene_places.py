@@ -7,8 +7,9 @@ from roadgpt.brief.amount import span
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, Way
 from roadgpt.brief.model import OF_THE_WORDS, Brief, at_least, exactly
 from roadgpt.brief.outline import outline
-from roadgpt.brief.scene import FLOWS, Role, Scene
+from roadgpt.brief.scene import Role, Scene
 from roadgpt.brief.scene_junctions import LEAVING, comes_to_junction, met
+from roadgpt.language.table import FLOWS
 
 
 def with_places(brief: Brief, scene: Scene) -> Brief:

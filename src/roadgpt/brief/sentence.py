@@ -16,7 +16,8 @@ from roadgpt.brief.junctions import (
 from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Slope, at_least, exactly
 from roadgpt.brief.normal import BUMPS, STRAIGHT, normal
 from roadgpt.brief.scene import scene_text
-from roadgpt.brief.words import FEATURE, KINDS, OVER, ROAD, SLOPES, SURFACES
+from roadgpt.brief.words import FEATURE, KINDS, OVER, ROAD, SLOPES
+from roadgpt.language.table import SURFACES
 
 CENTRES: dict[CentreLine, str] = {
     "solid": "a solid centre line",

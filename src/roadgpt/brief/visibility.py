@@ -9,8 +9,10 @@ from random import Random
 from statistics import mean
 from typing import Literal
 
-from roadgpt.brief.amount import Amount, exactly
-from roadgpt.brief.scene import NUMBERS, VEHICLES, WEATHER, ActorKind, Scene
+from roadgpt.brief.amount import exactly
+from roadgpt.brief.scene import Air, Scene
+from roadgpt.language.names import ActorKind
+from roadgpt.language.table import ROAD_USERS, WEATHER
 
 CONTRAST = 0.05
 """Contrast of a dark object before the horizon at the visual range, as a share of its contrast nearby."""
@@ -24,23 +26,26 @@ LAMPS = 300.0  # m from which position lamps have to be visible at night in clea
 
 
 def clear_range(scene: Scene) -> float:
-    """Returns the distance in metres at which fog and rain leave CONTRAST, by Koschmieder's law; infinite
-    without them."""
-    lost = 1.0 / fog_of(scene)
-    if scene.rain is not None:
-        decibels = RAIN * rain_of(scene) ** GROWTH
-        lost += decibels / 10 * math.log(10) / -math.log(CONTRAST) / 1000
+    """Returns the distance in metres at which the weather leaves CONTRAST, by Koschmieder's law; infinite
+    without any."""
+    lost = 0.0
+    for air in scene.weather:
+        if WEATHER[air.kind].falls:
+            decibels = RAIN * amount_in(air) ** GROWTH
+            lost += decibels / 10 * math.log(10) / -math.log(CONTRAST) / 1000
+        else:
+            lost += 1.0 / amount_in(air)
     return 1.0 / lost if lost else math.inf
 
 
-def fog_of(scene: Scene) -> float:
-    """Returns the visual range in fog in metres, of a range its middle; infinite without fog."""
-    return math.inf if scene.fog is None else mean(_ends(scene.fog, "fog"))
+def amount_in(air: Air) -> float:
+    """Returns the visual range in metres, or how much falls in mm/h; of a range its middle."""
+    return mean(_ends(air))
 
 
-def rain_of(scene: Scene) -> float:
-    """Returns how much it rains in mm/h, of a range its middle."""
-    return 0.0 if scene.rain is None else mean(_ends(scene.rain, "rain"))
+def falling(scene: Scene) -> float:
+    """Returns how much falls in all, in mm/h."""
+    return sum(amount_in(air) for air in scene.weather if WEATHER[air.kind].falls)
 
 
 def visual_range(scene: Scene, kind: ActorKind | Literal["lane", "lights"]) -> float:
@@ -48,22 +53,20 @@ def visual_range(scene: Scene, kind: ActorKind | Literal["lane", "lights"]) -> f
     traffic lights, if nothing hides it; infinite by day without fog and rain.
 
     A low sun takes nothing away here. Measure from the driver to the nearest point of the other."""
-    at_night = LAMPS if kind in (*VEHICLES, "lights") else LOW_BEAM
+    at_night = LAMPS if kind == "lights" or (kind != "lane" and ROAD_USERS[kind].lamps) else LOW_BEAM
     return min(clear_range(scene), at_night if scene.light == "night" else math.inf)
 
 
 def weather_drawn(scene: Scene, seed: int) -> Scene:
-    """Returns the scene with one number for fog and for rain, drawn evenly from their ranges by the seed of
+    """Returns the scene with one number for each kind of weather, drawn evenly from its range by the seed of
     the drive; the scene itself if each has one number."""
-    drawn: dict[str, Amount] = {}
-    for name in WEATHER:
-        amount: Amount | None = getattr(scene, name)
-        if amount is not None and not amount.exact:
-            value = Random(f"{name} {seed}").uniform(*_ends(amount, name))
-            drawn[name] = exactly(round(value, 1))
-    return scene.model_copy(update=drawn) if drawn else scene
+    for air in scene.weather:
+        if not air.amount.exact:
+            value = Random(f"{air.kind} {seed}").uniform(*_ends(air))
+            scene = scene.with_weather(air.kind, exactly(round(value, 1)))
+    return scene
 
 
-def _ends(amount: Amount, name: str) -> tuple[float, float]:
-    _, least, most, *_ = NUMBERS[name]
-    return least if amount.lo is None else amount.lo, most if amount.hi is None else amount.hi
+def _ends(air: Air) -> tuple[float, float]:
+    row, amount = WEATHER[air.kind], air.amount
+    return row.least if amount.lo is None else amount.lo, row.most if amount.hi is None else amount.hi

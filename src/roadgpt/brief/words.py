@@ -232,23 +232,6 @@ WHOLE_SLOPES = {"up": "climbs", "down": "falls", "flat": "is level"}
 """The verb for each slope of the whole road, for texts such as 'the whole road climbs'."""
 
 
-class Surface(NamedTuple):
-    """A surface that descriptions can name, such as ice."""
-
-    said: str
-    """The phrase for the surface in a sentence, such as 'on an icy road'."""
-    friction: float
-    """The friction coefficient of roads with this surface."""
-
-
-SURFACES = {
-    "wet": Surface("on a wet road", 0.6),
-    "snow": Surface("on a snowy road", 0.35),
-    "ice": Surface("on an icy road", 0.1),
-}
-"""The surfaces that set the friction of the World, by their names in ``Brief.beside``; the page of words
-gives the sources of the coefficients."""
-
 SURE = 0.8
 """Readings with a confidence (0 to 1) below this are wrong so often that the user is asked or warned."""
 

@@ -82,7 +82,7 @@ def scene_remark(brief: Brief, found: World) -> str:
     meant = World().in_scene_of(brief).scene
     if meant == found.scene and (brief.scene != Scene() or meant == Scene()):
         return ""  # the sentence of the words has it
-    told, own = (each.model_dump(exclude_defaults=True) for each in (meant, found.scene))
+    told, own = meant.told, found.scene.told
     if not (lost := [name for name in told if told[name] != own.get(name)]):
         friction = f"friction {found.site.friction:g}" if found.scene.surfaces else ""
         parts = (scene_text(found.scene), friction, land_remark(found.scene))

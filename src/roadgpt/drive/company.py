@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.brief.scene import VEHICLES, Scene
+from roadgpt.brief.scene import Scene
 from roadgpt.brief.visibility import visual_range
 from roadgpt.compiled import bound, compiled, inlined
 from roadgpt.drive.drive import COLUMNS, Box, FloatArray
 from roadgpt.drive.view import LightAhead, Other, Others
 from roadgpt.ground.sight import Horizon, is_behind_land
+from roadgpt.language.table import VEHICLES
 from roadgpt.network.landscape import horizon_around
 from roadgpt.network.lanes import HEADROOM
 from roadgpt.traffic import STEP, Actor, TestedCar, Traffic

@@ -283,7 +283,7 @@ def unpacked(header: Any, columns: Columns, states: NDArray[Any] | None) -> Driv
 
 
 def _tracks(actors: Any, states: NDArray[Any], duration: float) -> "Tracks":
-    from roadgpt.brief.scene import ActorKind
+    from roadgpt.language.names import ActorKind
     from roadgpt.traffic import STEP, Actor, Size, Tracks
 
     rows = strictly(tuple[tuple[str, ActorKind, tuple[float, float, float]], ...], actors)

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roadgpt.brief.scene import VEHICLES
 from roadgpt.compiled import compiled
 from roadgpt.drive.driving_line import FRONT, DrivingLine, FloatArray, turning_speed
 from roadgpt.drive.path_ahead import HALF_WIDTH, SPARE
 from roadgpt.drive.view import Other, View
+from roadgpt.language.table import VEHICLES
 from roadgpt.network import legs_of, network_of
 from roadgpt.network.lanes import Lanes, lanes_of
 from roadgpt.network.markings import CROSSWALK
@@ -107,7 +107,7 @@ class GivingWay:
             self._goes = not _is_awaited(ways, self._vehicles(view), car)
             found += [] if self._goes else [line - view.s]
         if self._crosswalks and must < (line := self._crosswalks[0][0]) < front + far:
-            persons = [each for each in view.others if each.kind in ("adult", "child")]
+            persons = [each for each in view.others if each.group == "person"]
             if any(_is_crossing(self._crosswalks[0][1], each) for each in persons):
                 found.append(line - view.s)
         return found

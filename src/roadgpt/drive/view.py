@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.brief.scene import VEHICLES
+from roadgpt.language.names import ActorKind
+from roadgpt.language.table import ROAD_USERS, VEHICLES
 
 if TYPE_CHECKING:
     from roadgpt.network import Route
@@ -54,9 +55,8 @@ class SignAhead(NamedTuple):
 class Other(NamedTuple):
     """Somebody or something else on the road, as a driver sees it."""
 
-    kind: str
-    """"car", "van", "truck", "bus", "motorcycle", "bicycle", "adult", "child", "animal", "cones", "barrier"
-    or "lost_load"."""
+    kind: ActorKind
+    """Such as "car" or "adult"; the page Plans lists them. More may come: ``group`` stays."""
     x: float
     """Position of the middle of its box along x in metres, and along ``y``."""
     y: float
@@ -67,6 +67,11 @@ class Other(NamedTuple):
     length: float
     """Length of its box in metres, and ``width``."""
     width: float
+
+    @property
+    def group(self) -> Literal["vehicle", "person", "animal", "thing"]:
+        """What its kind is one of."""
+        return ROAD_USERS[self.kind].group
 
 
 class Others(tuple[Other, ...]):

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
+from roadgpt.language.names import ActorKind
 from roadgpt.network import RoadEnd
 from roadgpt.road import Road, World
 from roadgpt.road.road import GOAL, START
@@ -27,9 +28,7 @@ class Others:
     """How the others on the road moved during a drive."""
 
     names: tuple[str, ...]
-    kinds: tuple[str, ...]
-    """"car", "van", "truck", "bus", "motorcycle", "bicycle", "adult", "child", "animal", "cones", "barrier"
-    or "lost_load"."""
+    kinds: tuple[ActorKind, ...]
     sizes: Array
     """Lengths, widths and heights of their boxes in metres, shape (n, 3)."""
     time: Array

@@ -15,24 +15,9 @@ import numpy as np
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
+from roadgpt.language.table import ROAD_USERS
 
 EGO = "Ego"  # name of the tested car
-BODIES = {
-    "car": ("Vehicle", "car", 1700),
-    "van": ("Vehicle", "van", 2500),
-    "truck": ("Vehicle", "truck", 16000),
-    "bus": ("Vehicle", "bus", 13000),
-    "motorcycle": ("Vehicle", "motorbike", 280),
-    "bicycle": ("Vehicle", "bicycle", 90),
-    "adult": ("Pedestrian", "pedestrian", 75),
-    "child": ("Pedestrian", "pedestrian", 22),
-    "animal": ("Pedestrian", "animal", 25),
-    "lost_load": ("MiscObject", "obstacle", 20),
-    "cones": ("MiscObject", "obstacle", 5),
-    "barrier": ("MiscObject", "barrier", 500),
-}
-"""Body, category and a typical mass in kg, riders included, of each kind of actor. The name of a body is that
-of the kind; the first kind of a category is read where it is not."""
 SMALL = 1.475  # m, midway between the heights of a child and an adult
 LARGEST = 100.0  # m, of a box
 FARTHEST = 1e6  # m or s, of a number
@@ -165,7 +150,7 @@ def _moves(entity: ET.Element, name: str, actions: Sequence[Timed]) -> Moves:
     if body is None:
         raise _UnknownError("its body is in a catalogue")
     category = body.get(key_of(body.tag), "")
-    kinds = [kind for kind, (_, its, _) in BODIES.items() if its == category]
+    kinds = [kind for kind, row in ROAD_USERS.items() if row.category == category]
     size, middle = body.find("BoundingBox/Dimensions"), body.find("BoundingBox/Center")
     if not kinds:
         raise _UnknownError(f"a {category or body.tag}")

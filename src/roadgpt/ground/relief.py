@@ -13,10 +13,11 @@ from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
 from roadgpt.brief.amount import span
-from roadgpt.brief.scene import USUAL_AWAY, USUAL_LENGTHS, Land
+from roadgpt.brief.scene import Land
 from roadgpt.brief.words import LandKind
 from roadgpt.compiled import compiled, inlined
 from roadgpt.geometry.curve import Array
+from roadgpt.language.table import LANDFORMS
 
 CELL = 8.0  # m between the points of land that is made
 MARGIN = 130.0  # m of land around the way
@@ -33,7 +34,6 @@ DAMMED = 70.0  # m from the edge of water within which roads are not lower than 
 GORGE = 5.0  # m below a road, most that a river is lower beside it than elsewhere
 STRAIGHT_ON = 5.0  # m between the points by which a line is continued before its start and behind its end
 
-CROSSED = {"valley": 60.0, "ridge": 60.0, "river": 30.0, "lake": 90.0, "coast": 60.0}
 OVER: dict[str, tuple[str, ...]] = {
     "valley": ("bridge", "embankment"), "river": ("bridge",), "lake": ("bridge",), "coast": ("bridge",),
     "ridge": ("tunnel", "cutting"),
@@ -174,7 +174,8 @@ class Stretch:
 def crosses(land: Land) -> bool:
     """Returns whether a way leads across something of the landscape, and has a bridge, tunnel, cutting or
     embankment there."""
-    return land.kind in USUAL_LENGTHS or (land.lie in ("across", "through") and land.kind in CROSSED)
+    row = LANDFORMS[land.kind]
+    return row.structure or (land.lie in ("across", "through") and row.crossed is not None)
 
 
 def stretches(lands: Sequence[Land], length: float) -> tuple[Stretch, ...]:
@@ -199,7 +200,8 @@ def stretches(lands: Sequence[Land], length: float) -> tuple[Stretch, ...]:
         if structure is None and land.kind in ("river", "lake", "coast"):
             structure = Land(kind="bridge")
         named = structure or land
-        said = span(named.length).lo if named.length else {**USUAL_LENGTHS, **CROSSED}[named.kind]
+        row = LANDFORMS[named.kind]
+        said = span(named.length).lo if named.length else row.length or row.crossed or 0.0
         long = min(said, 0.7 * length / len(crossed))
         middle = (number + 0.5) * length / len(crossed)
         found.append(Stretch(land, middle - long / 2, middle + long / 2, length, structure))
@@ -208,7 +210,7 @@ def stretches(lands: Sequence[Land], length: float) -> tuple[Stretch, ...]:
 
 def away_of(land: Land) -> float:
     """Returns how far what lies beside the way is away from it, in metres."""
-    return span(land.away).lo if land.away else USUAL_AWAY[land.kind]
+    return span(land.away).lo if land.away else LANDFORMS[land.kind].away or 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -251,7 +253,7 @@ def made(
     ``box`` are the least and the greatest x and y; None: as far around the roads as pictures need it."""
     low, high = way.box if box is None else box
     if box is None:  # with room for what lies far away
-        far_away = [away_of(each.land) - USUAL_AWAY[each.land.kind] for each in stretches if each.land.away]
+        far_away = [away_of(each.land) - (LANDFORMS[each.land.kind].away or 0.0) for each in stretches]
         low, high = low - max([0.0, *far_away]), high + max([0.0, *far_away])
     x, y = (np.arange(low[i], high[i] + CELL, CELL) for i in (0, 1))
     places = _Places.of(*np.meshgrid(x, y), way)

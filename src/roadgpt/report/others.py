@@ -10,8 +10,9 @@ from matplotlib.colors import to_rgb
 from matplotlib.patches import Polygon
 from matplotlib.patheffects import withStroke
 
-from roadgpt.brief.scene import VEHICLES
 from roadgpt.geometry.curve import Array
+from roadgpt.language.names import ActorKind
+from roadgpt.language.table import ROAD_USERS, VEHICLES
 from roadgpt.report.canvas import BLUE, GREEN, HALO, INK, POINTS, SOFT, VERMILLION, inches_of
 from roadgpt.report.plan_view import Frame, draw_road
 from roadgpt.run import Run
@@ -23,14 +24,9 @@ from roadgpt.verdict.verdict import IncidentKind
 
 NAVY, BROWN, PINK = "#1f3763", "#7a4b16", "#c2408f"
 COLOURS = {
-    **dict.fromkeys(("car", "van"), ("car, van", BLUE)),
-    **dict.fromkeys(("truck", "bus"), ("truck, bus", NAVY)),
-    **dict.fromkeys(("motorcycle", "bicycle"), ("two wheels", GREEN)),
-    **dict.fromkeys(("adult", "child"), ("person", PINK)),
-    "animal": ("animal", BROWN),
-    **dict.fromkeys(("cones", "barrier", "lost_load"), ("thing", SOFT)),
-}
-"""What the key calls each kind, and its colour."""
+    "car, van": BLUE, "truck, bus": NAVY, "two wheels": GREEN, "person": PINK, "animal": BROWN, "thing": SOFT,
+}  # fmt: skip
+"""The colours by what the key of a picture calls those that look alike."""
 BOX = ((-1, -1), (1, -1), (1, 1), (-1, 1))
 TURN = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
 SHAPES: dict[str, tuple[str, Any]] = {
@@ -49,6 +45,12 @@ INSET = 2.1  # inches, the height of the inset
 ROOM = 2.5  # m around the boxes in the inset
 LEAST_MOVED = 0.3  # m/s, from which an arrow shows where somebody goes
 ARROW = 0.2  # s of the way that an arrow shows
+
+
+def look_of(kind: ActorKind) -> tuple[str, str]:
+    """Returns what the key calls a kind, and its colour."""
+    key = ROAD_USERS[kind].key
+    return key, COLOURS[key]
 
 
 def moment_of(run: Run) -> float:
@@ -85,7 +87,7 @@ def draw_others(axes: Axes, run: Run, per_inch: float, time: float) -> None:
     for number, (way, state, actor) in enumerate(
         zip(ways.swapaxes(0, 1), others.at(time), others.actors, strict=True)
     ):
-        name, colour = COLOURS[actor.kind]
+        name, colour = look_of(actor.kind)
         way = way[~np.isnan(way[:, 0])]
         if len(way) > 1 and np.ptp(way, axis=0).max() > 0.5:
             pieces = np.stack([way[:-1], way[1:]], axis=1)
@@ -129,7 +131,7 @@ def key_of(run: Run) -> list[tuple[str, float, dict[str, Any]]]:
     if others is None or not others.actors:
         return []
     kinds = {actor.kind for actor in others.actors}
-    named = dict(look for kind, look in COLOURS.items() if kind in kinds)
+    named = dict(look_of(kind) for kind in ROAD_USERS if kind in kinds)
     style = {"ms": 6, "mec": "white", "mew": 0.6, "ls": "none", "markevery": [0]}
     found = [
         (name, 0.06, {**style, "mfc": colour, "marker": SHAPES.get(name, "s")[0]})
@@ -167,7 +169,7 @@ def draw_contact(axes: Axes, run: Run, contact: Incident) -> None:
     )
     course = (float(run.drive["heading"][step_at(run, contact.at_time)]), float(state[HEADING]))
     speeds, lengths = (found.speed, found.other_speed), (run.drive.car.length, actor.size.length)
-    names, colours = ("tested car", actor.name), (INK, COLOURS[actor.kind][1])
+    names, colours = ("tested car", actor.name), (INK, look_of(actor.kind)[1])
     left = int(boxes[1].mean(axis=0)[0] < boxes[0].mean(axis=0)[0])
     both = zip(boxes, ways, course, speeds, lengths, names, colours, strict=True)
     for number, (box, way, ahead, speed, length, name, colour) in enumerate(both):

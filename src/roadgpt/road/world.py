@@ -423,9 +423,11 @@ class World(BaseModel):
         if scene.surface or is_given:
             surface = slipperiest((*brief.beside, scene.surface or ""))
             scene = scene.model_copy(update={"surface": surface})
+        for air in self.scene.weather:
+            scene = scene.with_weather(air.kind, air.amount)
+        kept = self.scene.model_fields_set - {"weather"} if is_given else set[str]()
         said = {name: getattr(scene, name) for name in scene.model_dump(exclude_defaults=True)}
-        if is_given:
-            said = {name: each for name, each in said.items() if name not in self.scene.model_fields_set}
+        said = {name: each for name, each in said.items() if name not in kept}
         return self.changed(scene=self.scene.model_copy(update=said)) if said else self
 
     @property

@@ -12,17 +12,17 @@ import numpy as np
 from scipy.ndimage import uniform_filter
 
 from roadgpt.brief.scene import Scene
-from roadgpt.brief.visibility import CONTRAST, LOW_SUN, clear_range, rain_of
+from roadgpt.brief.visibility import CONTRAST, LOW_SUN, amount_in, clear_range, falling
 from roadgpt.compiled import compiled
 from roadgpt.export.ego import CAR, start_of
 from roadgpt.geometry.curve import Array
+from roadgpt.language.table import WEATHER
 from roadgpt.road import Road
 from roadgpt.scene.camera import Pose, axes_of
 from roadgpt.scene.mesh import PLAIN
 from roadgpt.scene.raster import OFFSETS, RenderBuffers
 from roadgpt.scene.shade import Colour, ray
 
-GREY = 0.6  # linear brightness of fog by day
 NIGHT = 0.012  # share of daylight that is left at night
 LEVEL = 0.66, 0.58, 0.46  # share of the usual light, red to blue, that a low sun gives
 DISC, VEIL, LEAST = 4.0, 6.0, 2.0
@@ -43,27 +43,31 @@ class Weather(NamedTuple):
 
     extinction: float  # 1/m: contrasts fall by the factor e in the distance 1 / extinction
     light: Colour  # share of daylight on what is seen
-    sky: float  # the same of sky and fog
+    sky: float  # the same of the sky
+    haze: Colour  # linear brightness of what hides the distance
     beam: float  # 1 if the headlights are on, else 0
     sun: Colour  # unit vector towards a low sun; 0 if there is none
     blur: float  # share of each pixel that comes from around it
 
     @classmethod
     def of(cls, scene: Scene, road: Road) -> "Weather | None":
-        """Returns the weather of a scene on a road; None for clear daylight. Fog hides a low sun."""
-        if not (scene.fog or scene.rain or scene.light):
+        """Returns the weather of a scene on a road; None for clear daylight. A haze hides a low sun."""
+        if not (scene.weather or scene.light):
             return None
-        rain, is_night, is_low = rain_of(scene), scene.light == "night", scene.light == "low_sun"
+        rain, is_night, is_low = falling(scene), scene.light == "night", scene.light == "low_sun"
         dim = (NIGHT if is_night else 1.0) / (1.0 + rain / RAINY)
         red, green, blue = LEVEL if is_low else (1.0, 1.0, 1.0)
+        hazes = [(amount_in(air), tint) for air in scene.weather if (tint := WEATHER[air.kind].tint)]
+        haze = min(hazes, default=(0.0, WEATHER["fog"].tint or LEVEL))[1]  # that of the thickest
         turn, level = float(road.heading(start_of(road))), math.cos(LOW_SUN)
         sun = level * math.cos(turn), level * math.sin(turn), math.sin(LOW_SUN)
         return cls(
             -math.log(CONTRAST) / clear_range(scene),
             (dim * red, dim * green, dim * blue),
             dim,
+            (haze[0] * dim, haze[1] * dim, haze[2] * dim),
             float(is_night),
-            sun if is_low and not scene.fog else (0.0, 0.0, 0.0),
+            sun if is_low and not hazes else (0.0, 0.0, 0.0),
             MOST * (1.0 - math.exp(-rain / BLURRED)),
         )
 
@@ -95,7 +99,7 @@ def _change(buffers: RenderBuffers, palette: Array, eye: Array, lamp: Array, wea
                     open_sky += 0.25
                     for c in range(3):
                         kept[c] += 0.25 * clear * weather.sky
-                        added[c] += 0.25 * (1.0 - clear) * GREY * weather.sky
+                        added[c] += 0.25 * (1.0 - clear) * weather.haze[c]
                     continue
                 dx, dy, dz = ray(eye, i + OFFSETS[k], row + (k + 0.5) * 0.25, rows, columns, pixel)
                 far = math.sqrt(dx * dx + dy * dy + dz * dz) / near
@@ -105,7 +109,7 @@ def _change(buffers: RenderBuffers, palette: Array, eye: Array, lamp: Array, wea
                 for c in range(3):
                     light = weather.light[c] + beam
                     kept[c] += 0.25 * clear * light
-                    added[c] += 0.25 * (1.0 - clear) * GREY * weather.sky
+                    added[c] += 0.25 * (1.0 - clear) * weather.haze[c]
                     if n >= 0 and kinds[n] >= PLAIN:  # lamps are as bright as ever
                         added[c] += 0.25 * clear * (1.0 - light) * palette[kinds[n] - PLAIN, 3 + c]
             dx, dy, dz = ray(eye, i + 0.5, row + 0.5, rows, columns, pixel)

@@ -16,24 +16,25 @@ import numpy as np
 from roadgpt.brief.junctions import Side
 from roadgpt.brief.scene import (
     ACCELERATES,
-    ALONG,
-    CUES,
-    DOINGS,
     HEAD_ON,
     LEAVES,
-    MOVING,
-    NUMBERS,
     ON_ITS_WAY,
-    SPOTS,
-    USUAL_BRAKING,
-    USUAL_SPEEDS,
     Action,
     Role,
-    What,
-    Where,
-    one_of,
 )
 from roadgpt.errors import SceneError
+from roadgpt.language.names import What, Where
+from roadgpt.language.table import (
+    ALONG,
+    CUES,
+    MANEUVERS,
+    MOVING,
+    NUMBERS,
+    PLACES,
+    ROAD_USERS,
+    USUAL_SPEEDS,
+    one_of,
+)
 from roadgpt.road.road import GOAL
 from roadgpt.road.speed_profile import GRAVITY
 from roadgpt.traffic.actor import SIZES, STEP, STILL
@@ -52,7 +53,8 @@ CATCH_UP = 1.0  # s, in which most of the way that is missing before a meeting i
 MATCHED = 3.0  # m/s^2, with which somebody matches the tested car
 SHARPEST = 2.0  # sideways nobody moves faster than the speed ahead divided by this
 FAST = 250.0 / 3.6  # m/s, the most that a scene can ask for
-BRAKE, STOP = USUAL_BRAKING.values()
+BRAKE, STOP = (MANEUVERS[what].usual or 0.0 for what in ("brake", "stop"))
+PULL = ROAD_USERS["car"].pull or 0.0
 CHANGE = 2.0  # m/s^2
 FIRM = 7.0  # m/s^2, the hardest with which one brakes behind others in its lane
 EASY = 4.0  # m/s^2, with which the tested car can stop before who stands or is slow
@@ -76,10 +78,6 @@ LATERAL: Mapping[What, float] = {
     "pull_out": 1.0, "wrong_way": 1.0,
 }  # fmt: skip
 """The greatest speed sideways in m/s."""
-PULL: Mapping[str, float] = {
-    "car": 2.0, "van": 1.5, "truck": 0.8, "bus": 0.9, "motorcycle": 2.5, "bicycle": 2.5, "animal": 4.0,
-}  # fmt: skip
-"""The acceleration from rest in m/s^2. The bicycle of Euro NCAP's CBLA reaches 15 km/h within 3.5 m."""
 PATH, RUNS, RUNNING_PATH = 1.0, 6.0 / 3.6, 1.5
 """Euro NCAP's persons reach their speed within 1 m (CPNA), or 1.5 m if they run (CPFA)."""
 AHEAD = (0.0, 1.0, 2.0, 3.0)  # s, at which bends count for a movement sideways
@@ -87,7 +85,7 @@ ROUNDED, STEEP = 0.05, 0.1  # m/s^2, by which limits are told, and from which pu
 QUICKEST = 10.0  # m/s^2, with which a person starts at most
 CROSSINGS = ("crossing", "crosswalk")
 IN_LANE = ("ahead", "behind", "oncoming")
-PLACES = ("gap", "headway", "lead", "station")
+PLACED = ("gap", "headway", "lead", "station")
 SCALES: Mapping[str, float] = {
     "speed": 1 / 3.6, "faster": 1 / 3.6, "to": 1 / 3.6, "overlap": 0.01, "impact": 0.01,
 }  # fmt: skip
@@ -212,7 +210,7 @@ class Act:
         self.limit = self.world.limits.speed_limit
         self.kerb = self.world.profile_of(self.road).side
         self.n, numbers = drawn(role, rng), [drawn(each, rng) for each in role.actions]
-        self.n |= {field: alike[0].n[field] for field in PLACES if alike and getattr(role, field)}
+        self.n |= {field: alike[0].n[field] for field in PLACED if alike and getattr(role, field)}
         self.cruise = self._cruise()
         """The speed that it is to have when it meets the tested car."""
         self.deeds = [self._deed(*each) for each in zip(role.actions, numbers, strict=True)]
@@ -261,7 +259,7 @@ class Act:
         keeps = [each for each in keeps if each is not self.lead]
         self.settles = self.rolls + sum(each.n.get("duration", ROLL) for each in keeps)
         """After how many seconds that begins if nothing is said."""
-        self.is_placed = bool(role.at) or not {*PLACES}.isdisjoint(self.n)
+        self.is_placed = bool(role.at) or not {*PLACED}.isdisjoint(self.n)
         """Whether the scene says where it is at first."""
         if self.is_along:
             self.s = self._beside()
@@ -329,8 +327,8 @@ class Act:
             self.put(other.along + math.copysign(room, self.s - self.car.s))
         else:
             raise SceneError(
-                f"{one_of(self.kind)} {SPOTS[self.where].said} would be in {one_of(other.kind)} "
-                f"{SPOTS[other.where].said}; give one of them another place"
+                f"{one_of(self.kind)} {PLACES[self.where].said} would be in {one_of(other.kind)} "
+                f"{PLACES[other.where].said}; give one of them another place"
             )
 
     def _deed(self, action: Action, n: dict[str, float]) -> Deed:
@@ -384,7 +382,7 @@ class Act:
             moves = moves or (deed.what == "overtake" and self.forward > 0)
             moves = moves or max(deed.n.get("to", 0.0), deed.n.get("accel", 0.0)) > 0
             if deed.what in (*LATERAL, "merge") and not moves:
-                refuse(f"stands, so it never {DOINGS[deed.what].said}; give it a speed, or 'accel'")
+                refuse(f"stands, so it never {MANEUVERS[deed.what].said}; give it a speed, or 'accel'")
             if deed.what in LATERAL:
                 self._leads_to(deed, self.along, self.t)
 
@@ -819,7 +817,7 @@ class Act:
     def _pull(self, speed: float) -> float:
         """Returns with which acceleration it starts to move if it will have this speed."""
         path = RUNNING_PATH if speed > RUNS else PATH
-        return PULL.get(self.kind) or min(max(speed**2 / 2 / path, 0.1), QUICKEST)
+        return ROAD_USERS[self.kind].pull or min(max(speed**2 / 2 / path, 0.1), QUICKEST)
 
     def _phases(self, deed: Deed) -> list[Phase]:  # noqa: C901 - a table
         """Returns what an action consists of, seen from where it begins."""
@@ -958,7 +956,7 @@ class Act:
     def _drive(self, time: float) -> None:
         """Moves it by some seconds, within which nothing else begins."""
         if self.phases and self.phases[0].follows is not None:
-            pull = idm(self.v, FAST, self.gap()[0], self.car.v, PULL["car"], CHANGE, self.phases[0].follows)
+            pull = idm(self.v, FAST, self.gap()[0], self.car.v, PULL, CHANGE, self.phases[0].follows)
             self.goal, self.pull = (FAST if pull > 0 else 0.0), max(min(abs(pull), HARDEST), 1e-6)
         pull = self.pull
         if self.goal != self.v and (most := self._room(self.goal > self.v, self.s)) < pull:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from roadgpt.brief.scene import SIZES as SIZES
-from roadgpt.brief.scene import ActorKind
-from roadgpt.brief.scene import Size as Size
+from roadgpt.language.names import ActorKind
+from roadgpt.language.table import SIZES as SIZES
+from roadgpt.language.table import Size as Size
 
 if TYPE_CHECKING:
     from roadgpt.scene import Body

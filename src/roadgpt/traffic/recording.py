@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING, Annotated, cast
 import numpy as np
 from pydantic import BaseModel, Field, ValidationError
 
-from roadgpt.brief.scene import ActorKind
 from roadgpt.errors import UsageError, advice_on
+from roadgpt.language.names import ActorKind
 from roadgpt.network import network_of
 from roadgpt.reading import read_bytes
 from roadgpt.traffic.actor import (

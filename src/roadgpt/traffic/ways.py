@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from roadgpt.brief.junctions import RAMPS
-from roadgpt.brief.scene import DOINGS, ON_ITS_WAY, Role, What
+from roadgpt.brief.scene import ON_ITS_WAY, Role
 from roadgpt.errors import SceneError
 from roadgpt.geometry import wrap_angle
+from roadgpt.language.names import What
+from roadgpt.language.table import MANEUVERS
 from roadgpt.network import Passage, Route, is_route
 from roadgpt.network.lane_along import LONGEST, SHARE
 from roadgpt.network.lanes import HEADROOM, STRAIGHT_AHEAD, Lanes, lanes_of
@@ -64,7 +66,7 @@ def way_of(role: Role, near: float, road: "Road", world: "World", away: float | 
             if way is not None and way.meets is not None and way.meets[1] >= near:
                 return way
     side = f"the {role.side}{' side' * (role.side == 'opposite')}" if role.side else "another side"
-    does = DOINGS[next((each.what for each in role.actions if each.what in ON_ITS_WAY), role.goes)].said
+    does = MANEUVERS[next((each.what for each in role.actions if each.what in ON_ITS_WAY), role.goes)].said
     lacks = wanted.format(near=near, side=side, does=does, where=role.where)
     raise SceneError(f"the route passes no {lacks}; change one of them")
 

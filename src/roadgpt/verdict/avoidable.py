@@ -21,9 +21,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.brief.scene import VEHICLES
 from roadgpt.brief.visibility import visual_range, weather_drawn
 from roadgpt.drive.company import EYE, SPACING, in_sight
+from roadgpt.language.table import VEHICLES
 from roadgpt.network import legs_of, network_of
 from roadgpt.network.landscape import horizon_around
 from roadgpt.network.lanes import lanes_of

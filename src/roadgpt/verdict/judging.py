@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roadgpt.brief.scene import VEHICLES
 from roadgpt.drive.drive_monitor import STUCK_AMONG_OTHERS, STUCK_TIME
 from roadgpt.errors import UsageError
+from roadgpt.language.table import VEHICLES
 from roadgpt.network import only_road
 from roadgpt.road.world import share_in_words
 from roadgpt.traffic.actor import SPEED

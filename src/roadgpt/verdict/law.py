@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.brief.scene import VEHICLES
+from roadgpt.language.table import PERSONS, VEHICLES
 from roadgpt.network import legs_of, network_of, only_road
 from roadgpt.network.lanes import lanes_of
 from roadgpt.network.markings import CROSSED
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from roadgpt.drive import Drive
     from roadgpt.road import Road, World
 
-LIABLE = (*VEHICLES, "adult", "child")
+LIABLE = (*VEHICLES, *PERSONS)
 BEFORE = 15.0  # m before a junction, within which its lines lie
 RECENT = 3.0  # s before the contact
 TURNS = np.pi / 9  # a turn, of the tested car or of its way through a junction
@@ -160,7 +160,7 @@ def _on_road(
             return "other", {"priority"}, set()
     if not stands and abs(across) > ACROSS * np.hypot(along, across):
         s, crossed = float(spot.along[0]), network.crossed
-        for way in road.passages if kind in ("adult", "child") else ():
+        for way in road.passages if kind in PERSONS else ():
             arrives = way.arrival in crossed and way.start - CROSSED <= s <= way.start
             leaves = way.departure in crossed and way.end <= s <= way.end + CROSSED
             done = {each.kind for each in incidents if way.start - BEFORE < each.at_s <= hit.at_s}

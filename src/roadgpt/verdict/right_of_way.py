@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roadgpt.brief.scene import VEHICLES
+from roadgpt.language.table import VEHICLES
 from roadgpt.network import legs_of, network_of
 from roadgpt.network.lanes import Lane, lanes_of
 from roadgpt.network.network import RoadEnd

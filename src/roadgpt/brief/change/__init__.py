@@ -20,9 +20,9 @@ from roadgpt.brief.plan import SCENE
 from roadgpt.brief.readers.model import ModelReader
 from roadgpt.brief.readers.model.trained import DOUBT
 from roadgpt.brief.refusal import MOST_CHARACTERS, causes_of
-from roadgpt.brief.words import SURFACES
 from roadgpt.chat import ChatSettings
 from roadgpt.errors import BriefError, EditError
+from roadgpt.language.table import SURFACES
 
 ADVICE = "say for example: make the second turn sharper"
 SHOWN = 60

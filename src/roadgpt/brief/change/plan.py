@@ -29,24 +29,12 @@ from roadgpt.brief.change.request import (
 )
 from roadgpt.brief.model import Kind, Sharpness, Side
 from roadgpt.brief.plan import CONDITIONS, SCENE, action_plan, read_action, scene_fields, scene_plan
-from roadgpt.brief.scene import (
-    CUES,
-    DOINGS,
-    FLOWS,
-    SPOTS,
-    WEATHER,
-    Action,
-    ActorKind,
-    Land,
-    Landform,
-    Patch,
-    Role,
-    Scene,
-)
-from roadgpt.brief.scene import NUMBERS as OF_SCENES
+from roadgpt.brief.scene import Action, Land, Patch, Role, Scene
 from roadgpt.errors import BriefError, EditError
+from roadgpt.language.table import CUES, FLOWS, LANDFORMS, MANEUVERS, PLACES, ROAD_USERS, WEATHER
+from roadgpt.language.table import NUMBERS as OF_SCENES
 
-ACTORS, LANDS = (*get_args(ActorKind), "actor"), (*get_args(Landform), "landscape")
+ACTORS, LANDS = (*ROAD_USERS, "actor"), (*LANDFORMS, "landscape")
 LISTS: Mapping[str, tuple[str, type[Frozen]]] = {
     **dict.fromkeys(ACTORS, ("actors", Role)),
     **dict.fromkeys(LANDS, ("landscape", Land)),
@@ -59,18 +47,18 @@ SINGLE: Mapping[str, tuple[str, ...]] = {
     "oncoming": ("oncoming",),
     "land": ("land",),
     "parked": ("parked",),
-    **{name: (name,) for name in WEATHER},
+    **{str(name): (name,) for name in WEATHER},
     **{name: (field,) for name, (field, _) in CONDITIONS.items() if field != "flow"},
-    "scene": tuple(Scene.model_fields),
+    "scene": tuple(name for name in (*Scene.model_fields, *WEATHER) if name != "weather"),
 }
 """The other parts of a scene, each with the fields that make it."""
 OF_SINGLE = {
     "ego": "speed", "traffic": "flow", "oncoming": "oncoming", "land": "land",
-    **{name: name for name in WEATHER},
+    **{str(name): name for name in WEATHER},
 }  # fmt: skip
 """The field of the one number or level that such a part has."""
 LEVELS = ("flow", "oncoming", "land")
-KEYS = {number.key: field for field, number in OF_SCENES.items()}
+KEYS = {number.key: field for field, number in OF_SCENES.items()} | {str(kind): kind for kind in WEATHER}
 Valued = TypeVar("Valued", bound=Value)
 
 
@@ -141,7 +129,7 @@ def _scene_wish(change: SceneChange) -> Iterator[str]:
 def _usual_key(change: SceneChange) -> str:
     """Returns the field of the number that stands without a key; "" if there is none."""
     if change.doing:
-        return next(iter(DOINGS[change.doing].numbers), "")
+        return next(iter(MANEUVERS[change.doing].numbers), "")
     name = change.target.name if change.target else ""
     return "" if name == "ego" else OF_SINGLE.get(name, "")
 
@@ -531,7 +519,7 @@ class SceneChangeParser(ChangeParser):
             self.at += 1
             if name in LISTS and word == "all":
                 self._set(fields, "every", True)
-            elif name in (*ACTORS, "") and word in SPOTS:
+            elif name in (*ACTORS, "") and word in PLACES:
                 self._set(fields, "where", word)
             elif name in (*ACTORS, *LANDS, "parked", "") and word in (*get_args(Side), "opposite"):
                 self._set(fields, "side", word)
@@ -546,7 +534,7 @@ class SceneChangeParser(ChangeParser):
             self.at = len(self.tokens)
             return SceneChange("add", target, new=new)
         if is_actor and self._take("as"):
-            kind = self._word() if self._next() in get_args(ActorKind) else ""
+            kind = self._word() if self._next() in ROAD_USERS else ""
             form = self._things(kind)
             if form == Things("") or form.numbers or form.every:
                 raise self._error("")
@@ -556,7 +544,7 @@ class SceneChangeParser(ChangeParser):
             if name == "traffic" and level == "none":
                 return SceneChange("remove", target)
             return SceneChange("add", new=Scene().model_copy(update={OF_SINGLE[name]: level}))
-        doing = next((each for each in DOINGS if is_actor and each == self._next()), None)
+        doing = next((each for each in MANEUVERS if is_actor and each == self._next()), None)
         self.at += doing is not None
         if self._take("remove"):
             return SceneChange("remove", target, doing=doing)
@@ -570,7 +558,7 @@ class SceneChangeParser(ChangeParser):
         self.at += bool(key)
         key = key or _usual_key(change)
         if change.doing:
-            has = (*DOINGS[change.doing].numbers, *CUES)
+            has = (*MANEUVERS[change.doing].numbers, *CUES)
         else:
             has = tuple(LISTS[name][1].model_fields) if name in LISTS else (OF_SINGLE.get(name, ""),)
         if not key or key not in has:

@@ -3,50 +3,55 @@ the scene before the changes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, get_args
+from typing import Any
 
 from pydantic import ValidationError
 
 from roadgpt.brief.amount import Amount, exactly, span
 from roadgpt.brief.change.plan import LEVELS, LISTS, OF_SINGLE, SINGLE
 from roadgpt.brief.change.request import SceneChange, Things, Value
-from roadgpt.brief.scene import (
-    FLOWS,
-    LAND_KINDS,
-    LIGHTS,
-    NUMBERS,
-    ONE_OF,
-    USUAL_AWAY,
-    USUAL_BRAKING,
-    USUAL_LENGTHS,
-    USUAL_SPEEDS,
-    Action,
-    Mark,
-    Role,
-    Scene,
-    Surface,
-)
-from roadgpt.brief.words import SURFACES
+from roadgpt.brief.scene import LAND_KINDS, ONE_OF, Action, Air, Mark, Role, Scene
 from roadgpt.errors import EditError, UnclearPlaceError
+from roadgpt.language.table import (
+    FLOWS,
+    LANDFORMS,
+    LIGHTS,
+    MANEUVERS,
+    NUMBERS,
+    SURFACES,
+    USUAL_SPEEDS,
+    WEATHER,
+)
 
 HALF_AGAIN = 0.5  # 'more' is half as much again, and 'less' undoes that
 EMPTY = Scene()
-USUAL: Mapping[str, Mapping[str, float]] = {
+USUAL: Mapping[str, Mapping[Any, float | None]] = {
     "speed": USUAL_SPEEDS,
-    "decel": USUAL_BRAKING,
-    "length": USUAL_LENGTHS,
-    "away": USUAL_AWAY,
+    "decel": {str(name): row.usual for name, row in MANEUVERS.items()},
+    "length": {str(name): row.length for name, row in LANDFORMS.items()},
+    "away": {str(name): row.away for name, row in LANDFORMS.items()},
 }
 """What numbers are where a scene says none, by the kind of what has them."""
+HIDING = {str(kind) for kind, row in WEATHER.items() if not row.falls}
 CALLED = {
     "ego": "start of the tested car",
     "parked": "row of parked cars",
     "scene": "part",
     "slippery": "slippery place",
-    **{name: f"{name} road" for name in get_args(Surface)},
-    **{name: f"{name} land" for name in LAND_KINDS},
+    **{str(name): f"{name} road" for name in SURFACES},
+    **{str(name): f"{name} land" for name in LAND_KINDS},
 }
 """Parts of a scene in words, where they are not called by their names."""
+
+
+def _fields_of(scene: Scene) -> dict[str, Any]:
+    """Returns the fields of a scene, with one for each kind of weather."""
+    fields = dict(scene)
+    del fields["weather"]
+    return fields | {kind: scene.amount_of(kind) for kind in WEATHER}
+
+
+NOTHING = _fields_of(EMPTY)
 
 
 def changed_scene(scene: Scene, changes: Sequence[SceneChange], limit: float) -> Scene:
@@ -64,7 +69,7 @@ class _Stage:
 
     def __init__(self, before: Scene, limit: float) -> None:
         self.before, self.limit = before, limit
-        self.fields = dict(before)
+        self.fields = _fields_of(before)
         names = dict.fromkeys(name for name, _ in LISTS.values())
         self.lists: dict[str, list[Any]] = {name: [*self.fields.pop(name)] for name in names}
         """The actors, slippery places and parts of the landscape; None for one that was removed."""
@@ -98,19 +103,22 @@ class _Stage:
         """Returns the scene after the changes."""
         left = {name: tuple(filter(None, those)) for name, those in self.lists.items()}
         left["actors"] = tuple(map(self._renumbered, left["actors"]))
+        air = [(kind, self.fields[kind]) for kind in WEATHER if self.fields[kind] is not None]
+        left["weather"] = tuple(Air.model_construct(kind=kind, amount=amount) for kind, amount in air)
+        fields = {name: value for name, value in self.fields.items() if name not in WEATHER}
         try:
-            return Scene.model_validate(EMPTY.model_copy(update=self.fields | left).model_dump())
+            return Scene.model_validate(EMPTY.model_copy(update=fields | left).model_dump())
         except ValidationError as error:
             problem = error.errors()[0]["msg"].removeprefix("Value error, ")
             raise EditError(f"the changed scene is not possible: {problem}") from error
 
     def _add(self, part: Scene) -> None:
-        for name, value in part:
+        for name, value in _fields_of(part).items():
             if name in self.lists:
                 self.lists[name] += value
             elif name == "parked":
                 self.fields[name] += value
-            elif value != getattr(EMPTY, name):
+            elif value != NOTHING[name]:
                 self._once(f"the {name} of the scene", name)
                 self.fields[name] = value
         self.named += part.actors
@@ -122,7 +130,7 @@ class _Stage:
 
     def _clear(self, target: Things) -> None:
         """Removes a part of which a scene has one."""
-        has = {name: value for name, value in self.before if value != getattr(EMPTY, name)}
+        has = {name: value for name, value in _fields_of(self.before).items() if value != NOTHING[name]}
         is_other = target.name in (*LIGHTS, *SURFACES, *LAND_KINDS) and target.name not in has.values()
         names = [name for name in SINGLE[target.name] if name in has and not is_other]
         if not names or (target.side and target.side not in self.before.parked):
@@ -133,7 +141,7 @@ class _Stage:
             elif target.side:
                 self.fields[name] = tuple(side for side in self.fields[name] if side != target.side)
             else:
-                self.fields[name] = getattr(EMPTY, name)
+                self.fields[name] = NOTHING[name]
 
     def _change_single(self, change: SceneChange, name: str) -> None:
         said, now = f"the {name} of the scene", self.fields[name]
@@ -144,7 +152,7 @@ class _Stage:
             return
         if now is None and name != "speed":
             raise EditError(f"there is no {name} in the scene that could change; ask for {name} first")
-        if name == "fog":  # its number is how far one sees: the more fog, the less
+        if name in HIDING:  # its number is how far one sees: the more fog, the less
             change = replace(change, more=change.more if change.by is not None else -change.more)
         self.fields[name] = _amount(change, now or exactly(self.limit), said)
 

@@ -5,9 +5,10 @@ nothing is executed. If the answer is not a valid plan, the model is asked again
 the error."""
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
+from string import Template
 from typing import TypeVar
 
 from pydantic import BaseModel, Field
@@ -21,6 +22,17 @@ from roadgpt.brief.refusal import EXAMPLE, MOST_CHARACTERS
 from roadgpt.chat import Chat, ChatSettings, Message, configured, open_chat
 from roadgpt.chat.answer import fixed_description
 from roadgpt.errors import BriefError, EditError, RoadGPTError
+from roadgpt.language.table import (
+    FLOWS,
+    LIGHTS,
+    MANEUVERS,
+    NUMBERS,
+    PLACES,
+    ROAD_USERS,
+    SURFACES,
+    WEATHER,
+    Maneuver,
+)  # fmt: skip
 from roadgpt.reading import read_text
 
 MOST_PLAN = 1000  # characters of a plan; the longest useful ones have a few hundred
@@ -37,7 +49,33 @@ def told_in(path: Path) -> tuple[str, tuple[tuple[str, str], ...]]:
 
 
 # The examples are sent as turns of the conversation: small models follow them better than rules.
+def _or(names: Iterable[str]) -> str:
+    *first, last = names
+    return f"{', '.join(first)} or {last}"
+
+
+def _rows() -> dict[str, str]:
+    """Returns what the rules tell of the table of the language."""
+
+    def first_number(row: Maneuver) -> str:
+        return f" ({NUMBERS[row.numbers[0]].unit})" if row.numbers and row.usual else ""
+
+    lone, sided = ([name for name, row in PLACES.items() if bool(row.side) == has] for has in (False, True))
+    airs = ((name, row, "mm/h" if row.falls else "metres of sight") for name, row in WEATHER.items())
+    return {
+        "who": _or(ROAD_USERS),
+        "lone": _or(lone),
+        "sided": ", ".join(f"{name} ({PLACES[name].said})" for name in sided),
+        "actions": _or(f"{name}{first_number(row)}" for name, row in MANEUVERS.items()),
+        "sided_actions": ", ".join(name for name, row in MANEUVERS.items() if row.side),
+        "flows": _or(FLOWS),
+        "weather": ", ".join(f"scene {name} {row.usual[0]:g} ({unit})" for name, row, unit in airs),
+        "lights": _or([*LIGHTS, *SURFACES]),
+    }
+
+
 RULES, EXAMPLES = told_in(Path(__file__).with_name("chat_rules.txt"))
+RULES = Template(RULES).substitute(_rows())
 ROAD = "road"
 """The first word of a line of "along" that holds for a whole road."""
 OTHERS = re.compile(r"\bscene\b[\s:]*")
@@ -62,11 +100,11 @@ SAID = {
     "give_way": "yield",
 }
 SAID_OF_OTHERS = {
-    **dict.fromkeys(("pedestrian", "person", "man", "woman"), "adult"),
-    **dict.fromkeys(("cyclist", "bike"), "bicycle"),
-    **dict.fromkeys(("motorbike", "motorcyclist"), "motorcycle"),
-    **dict.fromkeys(("lorry", "trailer"), "truck"),
-    **dict.fromkeys(("deer", "dog", "boar"), "animal"),
+    one.lower(): str(kind)
+    for kind, row in reversed([*ROAD_USERS.items()])
+    for words in (row.words, row.also, row.unseen)
+    for one, _ in words.get("en", ())
+    if one.isalpha() and one not in ROAD_USERS
 }
 
 

@@ -7,6 +7,7 @@ on the ground. Angles are right-handed, so pitch is positive nose down (ISO 8855
 import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from statistics import mean
@@ -15,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from shapely.geometry import LineString
 
-from roadgpt.brief.visibility import LOW_SUN, fog_of, rain_of
+from roadgpt.brief.visibility import LOW_SUN, amount_in
 from roadgpt.export.ego import (
     CAR,
     Others,
@@ -29,8 +30,10 @@ from roadgpt.export.ego import (
 from roadgpt.export.exporters.opendrive import OpenDrive
 from roadgpt.export.exporters.opendrive.signals import Signals
 from roadgpt.export.markup import Value, XmlElement
-from roadgpt.export.moves import BODIES, EGO, key_of, while_moving
+from roadgpt.export.moves import EGO, key_of, while_moving
 from roadgpt.geometry.curve import Array
+from roadgpt.language.names import ActorKind
+from roadgpt.language.table import ROAD_USERS, WEATHER, RoadUser
 from roadgpt.network import RoadEnd, legs_of, network_of, only_road
 from roadgpt.road import Road, World
 
@@ -206,7 +209,7 @@ class Moved(NamedTuple):
     """How one of the others moved while it was there."""
 
     name: str
-    kind: str
+    kind: ActorKind
     size: Array
     """Length, width and height in metres."""
     time: Array
@@ -220,7 +223,7 @@ class Moved(NamedTuple):
     @property
     def ahead(self) -> float:
         """Distance in metres from the reference point, a vehicle's rear axle, to the middle of the box."""
-        return -REAR * float(self.size[0]) if BODIES[self.kind][0] == "Vehicle" else 0.0
+        return -REAR * float(self.size[0]) if ROAD_USERS[self.kind].group == "vehicle" else 0.0
 
 
 def _moved(others: Others, end: float) -> Iterator[Moved]:
@@ -340,12 +343,12 @@ def _frame(
     entities = root.add("Entities")
     size, rear = (CAR.length, CAR.width, CAR.height), CAR.rear_axle
     axles = CAR.front_axle - rear, CAR.track
-    saloon = _body("saloon", ("Vehicle", "car", CAR.mass), size, CAR.middle - rear, axles, 7.0)
+    saloon = _body("saloon", replace(ROAD_USERS["car"], mass=CAR.mass), size, CAR.middle - rear, axles, 7.0)
     entities.add("ScenarioObject", {"name": EGO}).extended(saloon)
     for other in others:
         length, width, _ = (round(float(value), 3) for value in other.size)
         axles = (FRONT - REAR) * length, 0.85 * width
-        body = _body(other.kind, BODIES[other.kind], other.size, other.ahead, axles)
+        body = _body(other.kind, ROAD_USERS[other.kind], other.size, other.ahead, axles)
         # in esmini, angles else change only near the vertices
         body.children[-1].add("Property", {"name": "plineInterpolation", "value": "segment"})
         entities.add("ScenarioObject", {"name": other.name}).extended(body)
@@ -364,23 +367,26 @@ def _environment(action: XmlElement, road: Road, world: World) -> None:
     if scene.clock or scene.light == "night":
         time = DATE.replace("00:00", scene.clock, 1) if scene.clock else DATE
         environment.add("TimeOfDay", {"animation": "false", "dateTime": time})
-    if not (scene.fog or scene.rain or scene.light):
+    if not (scene.weather or scene.light):
         return
     weather = environment.add("Weather")
     if scene.light:
         azimuth = (math.pi / 2 - float(road.heading(start_of(road)))) % (2 * math.pi)
         sun = (azimuth, LOW_SUN) if scene.light == "low_sun" else (0.0, MIDNIGHT)
         weather.add("Sun", {"azimuth": round(sun[0], DECIMALS), "elevation": round(sun[1], DECIMALS)})
-    if scene.fog:
-        weather.add("Fog", {"visualRange": fog_of(scene)})
-    if scene.rain:
-        rain: dict[str, Value] = {"precipitationType": "rain", "precipitationIntensity": rain_of(scene)}
-        weather.add("Precipitation", rain)
+    hazes = [amount_in(air) for air in scene.weather if not WEATHER[air.kind].falls]
+    if hazes:
+        weather.add("Fog", {"visualRange": min(hazes)})
+    for air in scene.weather:
+        if falls := WEATHER[air.kind].falls:
+            told: dict[str, Value] = {"precipitationType": falls.category}
+            weather.add("Precipitation", {**told, "precipitationIntensity": amount_in(air)})
+            break  # the standard has one
 
 
 def _body(
     name: str,
-    what: tuple[str, str, float],
+    row: RoadUser,
     size: Iterable[float],
     middle: float,
     axles: tuple[float, float],
@@ -388,13 +394,13 @@ def _body(
 ) -> XmlElement:
     """Returns a body with its origin on the ground, at the middle of a vehicle's rear axle, from which the
     middle of the box is ``middle`` metres ahead. ``axles`` are their distance and their width."""
-    body, category, mass = what
     length, width, height = (round(float(value), 3) for value in size)
-    out = XmlElement(body, {"name": name, key_of(body): category, "mass": mass})
+    role: dict[str, Value] = {"role": row.role} if row.role else {}
+    out = XmlElement(row.body, {"name": name, key_of(row.body): row.category, "mass": row.mass, **role})
     box = out.add("BoundingBox")
     box.add("Center", {"x": round(middle, 6), "y": 0, "z": round(height / 2, 6)})
     box.add("Dimensions", {"width": width, "length": length, "height": height})
-    if body == "Vehicle":
+    if row.body == "Vehicle":
         out.add("Performance", {"maxSpeed": 70, "maxAcceleration": pull, "maxDeceleration": 10})
         both, (ahead, across) = out.add("Axles"), axles
         each = {"wheelDiameter": CAR.wheel, "trackWidth": round(across, 6), "positionZ": CAR.wheel / 2}

@@ -20,12 +20,13 @@ from PIL import Image
 from roadgpt.brief import sentence
 from roadgpt.brief.junctions import NAMES
 from roadgpt.brief.scene import Scene, scene_text
-from roadgpt.brief.visibility import rain_of
+from roadgpt.brief.visibility import amount_in
 from roadgpt.check.describing import describe
 from roadgpt.errors import ExportError, RoadGPTError, UsageError, explained
 from roadgpt.export.ego import CAR
 from roadgpt.geometry.curve import Array
 from roadgpt.ground.mesh import GroundMesh, mesh_of, water_of
+from roadgpt.language.table import ROAD_USERS, WEATHER
 from roadgpt.network import network_of, only_road
 from roadgpt.network.markings import PaintedStroke, arrows, between_crosswalks, signs, strokes
 from roadgpt.network.paved import Area
@@ -34,7 +35,7 @@ from roadgpt.network.structures import solids
 from roadgpt.network.surface import JunctionSurface, NetworkSurface, free_ends, triangulated
 from roadgpt.report.birds_eye import minor_places_of, places_of
 from roadgpt.report.canvas import INK, LETTERS, OUTCOMES, SEVERE, VERMILLION, origin, outcome_of
-from roadgpt.report.others import COLOURS as OF_KINDS
+from roadgpt.report.others import look_of
 from roadgpt.report.plan_view import rings_of
 from roadgpt.road import Profile, Road, World
 from roadgpt.road.edges import stations
@@ -149,6 +150,7 @@ DRIVE = {
     "outside": 4,
 }
 """Columns of a drive that the page uses, and their decimals."""
+OF_LOOKS = ("group", "look", "paint", "lamps", "blue_light")
 OF_OTHERS = {"x": CENTIMETRES, "y": CENTIMETRES, "z": CENTIMETRES, "heading": 3, "speed": 2}
 """Columns of the states of others, and their decimals."""
 LONGEST, CRITICAL = 20.0, 1.5
@@ -170,9 +172,11 @@ def scene(run: Run) -> dict[str, Any]:
         raise UsageError(f"there is no road to show: {run.description}")
     is_only = only_road(run.road, run.world) is not None
     more = {} if is_only else {"network": network_values(run.road, run.world)}
-    conditions = {name: getattr(run.world.scene, name) for name in ("fog", "rain", "light")}
+    conditions = {name: getattr(run.world.scene, name) for name in ("weather", "light")}
     if weather := Weather.of(run.world.scene, run.road):
-        more["weather"] = {**weather._asdict(), "rain": rain_of(run.world.scene)}
+        falls = [(WEATHER[air.kind].falls, amount_in(air)) for air in run.world.scene.weather]
+        drops = [{**kind._asdict(), "amount": amount} for kind, amount in falls if kind]
+        more["weather"] = {**weather._asdict(), "falls": drops}
     return {
         "title": run.title,
         "outcome": outcome_of(run),
@@ -272,8 +276,8 @@ def _others(run: Run) -> dict[str, Any]:
         actors.append({
             **actor.size._asdict(),
             "name": actor.name,
-            "kind": actor.kind,
-            "colour": OF_KINDS[actor.kind][1],
+            "colour": look_of(actor.kind)[1],
+            **{name: getattr(ROAD_USERS[actor.kind], name) for name in OF_LOOKS},
             "first": int(there[0]),
             **{name: rounded(column, digits) for (name, digits), column in columns},
         })  # fmt: skip

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.brief.scene import FLOWS, ActorKind, Flow
 from roadgpt.compiled import bound
+from roadgpt.language.names import ActorKind, Flow
+from roadgpt.language.table import FLOWS, ROAD_USERS
 from roadgpt.network import legs_of, network_of
 from roadgpt.network.lanes import Lanes, lanes_of
 from roadgpt.network.network import Leg, Network, RoadEnd
@@ -29,19 +30,8 @@ if TYPE_CHECKING:
 
 DENSITY: Mapping[str, float] = {name: per_km / 1000.0 for name, per_km in FLOWS.items()}
 """Vehicles for each metre of a lane by the name of the flow."""
-SHARES: Mapping[ActorKind, float] = {"car": 0.87, "van": 0.06, "truck": 0.04, "bus": 0.01, "motorcycle": 0.02}
-"""Close to the vehicle kilometres of German federal roads, of which heavy goods vehicles drive 5 to 9 %
-(BASt, automatic counts)."""
-DRIVERS: Mapping[ActorKind, tuple[float, float, float, float]] = {
-    "car": (1.5, 1.5, 2.0, 50.0),
-    "van": (1.5, 1.3, 2.0, 44.0),
-    "truck": (1.7, 0.8, 2.0, 25.0),
-    "bus": (1.7, 0.9, 2.0, 27.8),
-    "motorcycle": (1.5, 2.0, 2.5, 50.0),
-}
-"""T in s, a and b in m/s^2, and the top speed in m/s, which is limited to 90 and 100 km/h for trucks and
-buses (Directives 92/6/EEC and 2002/85/EC). Cars: M. Treiber, A. Hennecke, D. Helbing (2000) with T 1.5 s;
-trucks and buses accelerate as in M. Treiber, A. Kesting, Traffic Flow Dynamics (2013), table 11.2."""
+IN_FLOWS = {kind: row.in_flows for kind, row in ROAD_USERS.items() if row.in_flows}
+SHARES = [each.share for each in IN_FLOWS.values()]
 SPREAD, SLOWEST, FASTEST = 0.1, 0.8, 1.2  # of the share of the limit that drivers choose: SUMO's speedDev
 REACH = 500.0  # m: lanes that come nowhere as near to the driven road are left out
 KEPT = 4  # lanes behind a vehicle that are remembered, and ahead of it that are always planned
@@ -192,12 +182,12 @@ class IdmMover:
         rng = np.random.default_rng([self._seed, number])
         way, goal = self._way_from(lane, rng)
         longest = float(self.lanes.longest[way].min())
-        kind: ActorKind = list(SHARES)[int(rng.choice(len(SHARES), p=list(SHARES.values())))]
+        kind: ActorKind = list(IN_FLOWS)[int(rng.choice(len(IN_FLOWS), p=SHARES))]
         if SIZES[kind].length > longest:
             kind = "car"
         size = SIZES[kind]
         row = self._row()
-        headway, pull, brake, top = DRIVERS[kind]
+        _, headway, pull, brake, top = IN_FLOWS[kind]
         factor = float(np.clip(rng.normal(1.0, SPREAD), SLOWEST, FASTEST))
         speed = min(most, float(self.lanes.limit[lane]) * factor, top)
         self._numbers[row] = 0.0

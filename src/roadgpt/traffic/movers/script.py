@@ -6,7 +6,8 @@ from collections import Counter
 
 import numpy as np
 
-from roadgpt.brief.scene import DOINGS, HEAD_ON, LEAVES, MOST_MORE
+from roadgpt.brief.scene import HEAD_ON, LEAVES, MOST_MORE
+from roadgpt.language.table import MANEUVERS
 from roadgpt.road.road import START
 from roadgpt.traffic.acting import BEHIND, INTO, ONCOMING, STANDS, Act, Car
 from roadgpt.traffic.actor import HEADING, SIZES, STILL, Actor, FloatArray, TestedCar, corners
@@ -193,7 +194,7 @@ def _did(actor: Actor, act: Act, number: int) -> str:
     whats = [deed.what for deed in act.deeds[: number + 1]]
     if number < 0:
         return actor.name
-    return f"{actor.name} {DOINGS[whats[-1]].said}{' again' * (whats.count(whats[-1]) - 1)}"
+    return f"{actor.name} {MANEUVERS[whats[-1]].said}{' again' * (whats.count(whats[-1]) - 1)}"
 
 
 def _touch(act: Act, other: Act) -> bool:

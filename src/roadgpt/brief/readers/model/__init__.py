@@ -26,6 +26,7 @@ from roadgpt.brief.readers.model.before import (
     other_script,
     without_asides,
 )
+from roadgpt.brief.readers.model.mentions import with_kinds, with_known_words
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.number_words import COUNTED, plain
 from roadgpt.brief.readers.model.ring_sizes import with_diameters
@@ -122,7 +123,7 @@ class ModelReader:
     def read(self, words: str) -> Brief:
         """Returns the Brief of a description; raises TooMuchError, with the Brief, if the road is too large
         for the usual map of 250 m, and BriefError if the description cannot be read."""
-        written, words = words, without_asides(words)
+        written, (words, instead) = words, with_known_words(without_asides(words))
         text = _text(words)
         trained, found = chosen(self.roads, self.routes, words, text)
         if not found:
@@ -130,7 +131,9 @@ class ModelReader:
         draft = most_plausible(found)
         if draft.asks is not None and draft.asks.map is None and asks_for_a_closed_loop(words):
             raise refused("!impossible loop")
-        brief = self._brief(words, text, draft, trained).model_copy(update={"words": written})
+        brief = self._brief(words, text, draft, trained)
+        unused = tuple(instead.get(word, word) for word in brief.unused)
+        brief = with_kinds(brief.model_copy(update={"words": written, "unused": unused}), written)
         is_sure = brief.confidence >= SURE
         return brief if is_sure else brief.model_copy(update={"other": _other(found, brief, words, text)})
 
@@ -160,17 +163,18 @@ class ModelReader:
     ) -> tuple[Brief, ...]:
         """Returns up to ``number`` different readings: first the likeliest, then sampled ones. For the
         arguments see ``brief.alternatives``."""
-        first, words = self.read(words), without_asides(words)
+        written, first = words, self.read(words)
+        words, _ = with_known_words(without_asides(words))
         text = _text(words)
         trained, _ = chosen(self.roads, self.routes, words, text)
         across = trained.network.encode(text)
         rng = np.random.default_rng(seed)
         found: dict[tuple[str, ...], Brief] = {}
         for _ in range(4 * number):
-            written = trained.network.drawn(across, text, rng, temperature)
-            asks = asked_in(written.tokens, text.slots)
-            draft = ScoredPlan(written.tokens, asks, written.score, written.log_chances)
-            found.setdefault(written.tokens, self._brief(words, text, draft, trained))
+            drawn = trained.network.drawn(across, text, rng, temperature)
+            asks = asked_in(drawn.tokens, text.slots)
+            draft = ScoredPlan(drawn.tokens, asks, drawn.score, drawn.log_chances)
+            found.setdefault(drawn.tokens, with_kinds(self._brief(words, text, draft, trained), written))
         others = sorted(found.values(), key=lambda brief: -brief.confidence)
         same = first.model_copy(update={"confidence": 1.0})
         return (first, *(b for b in others if b.model_copy(update={"confidence": 1.0}) != same))[:number]

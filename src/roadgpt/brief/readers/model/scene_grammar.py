@@ -28,31 +28,34 @@ from roadgpt.brief.readers.model.grammar import (
     one_of,
     sequel,
 )
-from roadgpt.brief.readers.model.vocabulary import RAINS, WISHES, value_of
+from roadgpt.brief.readers.model.vocabulary import RAINS, WISHES, value_of, written
 from roadgpt.brief.scene import (
-    ANYTHING,
-    CUES,
-    DOINGS,
     LAND_KINDS,
-    NUMBERS,
     ON_ITS_WAY,
     ONE_OF,
-    SPOTS,
-    STRUCTURES,
-    ActorKind,
-    Flow,
     Land,
-    Landform,
     Lie,
-    Light,
     Patch,
     Role,
-    Surface,
-    What,
-    Where,
 )
 from roadgpt.brief.words import Compass, Surroundings
+from roadgpt.language.names import What, Where
+from roadgpt.language.table import (
+    CUES,
+    FLOWS,
+    LANDFORMS,
+    LIGHTS,
+    MANEUVERS,
+    NUMBERS,
+    PLACES,
+    ROAD_USERS,
+    SURFACES,
+    WEATHER,
+)  # fmt: skip
 
+KINDS, WHATS, AIRS = written(ROAD_USERS), cast("list[What]", written(MANEUVERS)), written(WEATHER)
+FORMS, WHERES = written(LANDFORMS), cast("list[Where]", written(PLACES))
+STRUCTURES = written(form for form, row in LANDFORMS.items() if row.structure)
 MOST_ACTORS, MOST_PATCHES, MOST_LANDS, MOST_ACTIONS = 6, 2, 5, 4
 MOST_SAME = tuple(map(str, range(1, 10)))
 SIDES = ("left", "right")
@@ -89,13 +92,12 @@ def _parts(numbers: Numbers) -> list[Symbol]:
     key = numbers.keyed
     return [
         *[_actor(numbers)] * MOST_ACTORS,
-        one_of(*get_args(Flow)),
-        sequel(one_of("oncoming"), one_of(*get_args(Flow), "none")),
+        one_of(*FLOWS),
+        sequel(one_of("oncoming"), one_of(*FLOWS, "none")),
         *(sequel(one_of("parked"), one_of(*SIDES)) for _ in SIDES),
-        _with_amount("fog", numbers),
-        any_of(_with_amount("rain", numbers), one_of(*RAINS)),
-        one_of(*get_args(Light)),
-        one_of(*get_args(Surface)),
+        *(_air(kind, numbers) for kind in AIRS),
+        one_of(*LIGHTS),
+        one_of(*SURFACES),
         *[sequel(one_of("slippery"), in_order(*map(key, ("mu=", "s=", "len="))))] * MOST_PATCHES,
         *[_land(numbers)] * MOST_LANDS,
     ]
@@ -119,32 +121,33 @@ def _joined(parts: Sequence[Symbol]) -> Symbol:
     return since(0)
 
 
-def _with_amount(name: str, numbers: Numbers) -> Symbol:
-    """Returns the symbol for a condition, with or without an amount of the text."""
-    return sequel(one_of(name), numbers.amount(f"{name}=", may_be_empty=True))
+def _air(kind: str, numbers: Numbers) -> Symbol:
+    """Returns the symbol for a kind of weather, with or without an amount of the text."""
+    symbol = sequel(one_of(kind), numbers.amount(f"{kind}=", may_be_empty=True))
+    return any_of(symbol, one_of(*RAINS)) if kind == "rain" else symbol
 
 
 def _actor(numbers: Numbers) -> Symbol:
     def after_kind(kind: str) -> Stack:
-        places = {where: spot for where, spot in SPOTS.items() if kind in spot.who}
+        places = [where for where in WHERES if kind in PLACES[where].who]
         after = {str(where): partial(_after_place, kind, where, numbers) for where in places}
         return sequel(numbers.keyed("x"), is_open=True), Symbol(lambda: places, lambda where: after[where]())
 
-    return Symbol(lambda: ANYTHING, after_kind)
+    return Symbol(lambda: KINDS, after_kind)
 
 
 def _after_place(kind: str, where: Where, numbers: Numbers) -> Stack:
-    sides = [*SIDES, *(["opposite"] if where == "junction" else [])] if SPOTS[where].before_side else []
+    sides = [*SIDES, *(["opposite"] if where == "junction" else [])] if PLACES[where].side else []
     fields = [name for name in NUMBERS if name in Role.model_fields and where in NUMBERS[name].where]
-    if kind not in DOINGS["keep"].who or where == "parked":
+    if kind not in MANEUVERS["keep"].who or where == "parked":
         fields = [name for name in fields if name not in ("speed", "faster")]
     if where == "crossing":  # the networks were not trained to write its gap to a part of the route
         fields.remove("gap")
     apart = (group for group in ONE_OF[:-1] if "at" not in group)
     groups = [[name for name in fields if name in group] for group in (*apart, ["away"])]
     keys = [_one_key(names, numbers) for names in groups]
-    doings = [what for what, doing in DOINGS.items() if kind in doing.who]
-    first = [what for what in doings if where in DOINGS[what].starts]
+    doings = [what for what in WHATS if kind in MANEUVERS[what].who]
+    first = [what for what in doings if where in MANEUVERS[what].starts]
     later_on = [what for what in doings if what not in ON_ITS_WAY or what in first]
     actions = _actions(first, later_on, MOST_ACTIONS, numbers)
     return (
@@ -165,8 +168,8 @@ def _actions(first: Sequence[What], later_on: Sequence[What], most: int, numbers
 
 
 def _after_doing(what: What, numbers: Numbers) -> Stack:
-    doing = DOINGS[what]
-    side = [one_of(*SIDES)] if doing.has_side else []
+    doing = MANEUVERS[what]
+    side = [one_of(*SIDES)] if doing.side else []
     keys = [_one_key([name], numbers) for name in NUMBERS if name in doing.numbers]
     cue = any_of(_one_key([name for name in CUES if name in NUMBERS], numbers), _mark(is_of_action=True))
     return (in_order(*side, *keys, cue),)
@@ -184,7 +187,7 @@ def _mark(is_of_action: bool = False) -> Symbol:
     also for what another actor does, such as "with truck 1 brake"."""
     last = sequel(one_of("-"), one_of("1"))
     place = sequel(one_of("turn", "junction"), any_of(one_of(*MOST_SAME), last))
-    event = sequel(one_of(*get_args(ActorKind)), one_of(*MOST_SAME), one_of(*DOINGS))
+    event = sequel(one_of(*KINDS), one_of(*MOST_SAME), one_of(*WHATS))
     if not is_of_action:
         return sequel(one_of("after", "before", "in"), place)
     after = sequel(one_of("after"), any_of(place, event))
@@ -196,7 +199,7 @@ def _land(numbers: Numbers) -> Symbol:
     structures = sequel(one_of(*STRUCTURES), in_order(count, length))
     away = numbers.keyed("away=")
     lies = in_order(count, one_of(*get_args(Lie)), one_of(*SIDES), length, away)
-    forms = [form for form in get_args(Landform) if form not in STRUCTURES]
+    forms = [form for form in FORMS if form not in STRUCTURES]
     return any_of(structures, sequel(one_of(*forms), lies))
 
 
@@ -211,23 +214,22 @@ def any_change(numbers: Numbers) -> Symbol:
 def _scene_change(numbers: Numbers) -> Symbol:
     """Returns the symbol for one change of a scene: what is added, or something and what is to be of it."""
     actor = any_of(
-        sequel(one_of("add"), _actions([*DOINGS], [], 1, numbers)),
-        sequel(one_of("as"), in_order(one_of(*get_args(ActorKind)), one_of(*SPOTS), ONE_SIDE, least=1)),
-        Symbol(lambda: DOINGS, lambda what: (_of_doing(cast(What, what), numbers),)),
+        sequel(one_of("add"), _actions(WHATS, [], 1, numbers)),
+        sequel(one_of("as"), in_order(one_of(*KINDS), one_of(*WHERES), ONE_SIDE, least=1)),
+        Symbol(lambda: WHATS, lambda what: (_of_doing(cast(What, what), numbers),)),
         *_of_thing(Role, numbers),
     )
-    levels = one_of(*get_args(Flow), "none")
+    levels = one_of(*FLOWS, "none")
     things: dict[tuple[str, ...], tuple[Sequence[Symbol], Symbol]] = {
-        (*get_args(ActorKind), "actor"): ((*WHICH, one_of(*SPOTS), ONE_SIDE), actor),
-        (*get_args(Landform), "landscape"): ((*WHICH, one_of(*SIDES)), any_of(*_of_thing(Land, numbers))),
+        (*KINDS, "actor"): ((*WHICH, one_of(*WHERES), ONE_SIDE), actor),
+        (*FORMS, "landscape"): ((*WHICH, one_of(*SIDES)), any_of(*_of_thing(Land, numbers))),
         ("slippery",): (WHICH, any_of(*_of_thing(Patch, numbers))),
         (TESTED_CAR,): ((), any_of(sequel(one_of("v="), _value("v=", numbers)), one_of("remove"))),
         ("traffic", "oncoming"): ((), any_of(one_of("remove"), levels, *MORE_OR_LESS)),
         ("land",): ((), any_of(*MORE_OR_LESS)),
-        ("fog",): ((), any_of(one_of("remove"), _value("fog=", numbers))),
-        ("rain",): ((), any_of(one_of("remove"), _value("rain=", numbers))),
+        **{(kind,): ((), any_of(one_of("remove"), _value(f"{kind}=", numbers))) for kind in AIRS},
         ("parked",): ([one_of(*SIDES)], one_of("remove")),
-        (*get_args(Light), *get_args(Surface), "scene"): ((), one_of("remove")),
+        (*LIGHTS, *SURFACES, "scene"): ((), one_of("remove")),
     }
     known = [
         sequel(one_of(*names), in_order(*which), one_of(":"), wish) for names, (which, wish) in things.items()
@@ -251,9 +253,9 @@ def _of_thing(kind: type[Frozen], numbers: Numbers) -> list[Symbol]:
 
 
 def _of_doing(what: What, numbers: Numbers) -> Symbol:
-    names = [*DOINGS[what].numbers, *(name for name in CUES if name in NUMBERS)]
+    names = [*MANEUVERS[what].numbers, *(name for name in CUES if name in NUMBERS)]
     keys = [f"{NUMBERS[name].key}=" for name in names]
-    usual = [_value(keys[0], numbers)] if DOINGS[what].numbers else []
+    usual = [_value(keys[0], numbers)] if MANEUVERS[what].numbers else []
     return any_of(
         one_of("remove"), *usual, *(sequel(one_of(key), _value(key, numbers)) for key in dict.fromkeys(keys))
     )

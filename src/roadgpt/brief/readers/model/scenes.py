@@ -18,12 +18,32 @@ from roadgpt.brief.readers.model.clock import told_time
 from roadgpt.brief.readers.model.number_words import plain
 from roadgpt.brief.readers.model.slots import NumberSlot, SlottedText
 from roadgpt.brief.readers.model.vocabulary import WISHES, plan_of
-from roadgpt.brief.scene import STRUCTURES, Land, Scene
+from roadgpt.brief.scene import Land, Scene
 from roadgpt.brief.words import Compass, unaccented
+from roadgpt.language.table import LANDFORMS, ROAD_USERS, WEATHER, Words
 
-NAMES: Mapping[str, frozenset[str]] = {
-    name: frozenset(words.split()) for name, words in TABLE["others"].items()
-}
+
+def _names() -> Iterator[tuple[str, set[str]]]:
+    """Yields the kinds of road users that a word may mean, joined by "_or_", and the plain words; the same of
+    weather, surfaces and light."""
+    like = {"person": "adult_or_child", "thing": "cones_or_barrier_or_lost_load"}
+    for kind, row in ROAD_USERS.items():
+        yield like.get(row.group, row.read_as or kind), _single(row.words) | _single(row.unseen)
+    for air, weather in WEATHER.items():
+        wet = ["wet", "slippery"] if (weather.read_as or air) == "rain" else []
+        yield "_or_".join([weather.read_as or air, *wet]), _single(weather.words) | _single(weather.unseen)
+    for name, words in TABLE["others"].items():
+        yield name, {*words.split()}
+
+
+def _single(words: Words) -> set[str]:
+    said = {plain(each) for pairs in words.values() for pair in pairs for each in pair}
+    return {each for each in said if "{" not in each and " " not in each}
+
+
+NAMES: dict[str, set[str]] = {}
+for _name, _said in _names():
+    NAMES.setdefault(_name, set()).update(_said)
 """The words for other road users, weather and light that a scene should have if they are said, by what they
 are."""
 OF_SCENES = word_set("of_scenes").union(*NAMES.values())
@@ -98,7 +118,8 @@ def things_in(brief: Brief) -> frozenset[str]:
     """Returns the names of what is told of a road beside its shape, such as "truck", "fog" and "speed"."""
     scene = brief.scene
     kinds = [role.kind for role in scene.actors]
-    things = [name for name in ("flow", "oncoming", "parked", "fog", "rain") if getattr(scene, name)]
+    things = [name for name in ("flow", "oncoming", "parked") if getattr(scene, name)]
+    things += [air.kind for air in scene.weather]
     lands = [land.kind for land in scene.landscape]
     is_fast = brief.speed or scene.speed or any(role.speed for role in scene.actors)
     others = ["speed" if is_fast else "", "place" if brief.surroundings else ""]
@@ -180,8 +201,10 @@ def without_untold(brief: Brief, words: str) -> Brief:
     them. Names of towns tell of traffic on the left, unless other words are American."""
     said, scene = unaccented(without_asides(words, SIGHT)), brief.scene
     told = {name for name, pattern in TOLD.items() if pattern.search(said)}
-    needs = {"fog": scene.fog and "fog", "surface": scene.surface == "wet" and "wet", "light": scene.light}
+    needs = {"surface": scene.surface == "wet" and "wet", "light": scene.light}
     changes = {field: None for field, name in needs.items() if name and name not in told}
+    if "fog" not in told:
+        scene = scene.with_weather("fog", None)
     beside = tuple(each for each in brief.beside if UNTOLD.get(each) in {None, *told})
     is_left = "left_hand" in told or ("left_hand_towns" in told and "american" not in told)
     left_hand = brief.left_hand and (is_left or says_left_hand(words))
@@ -193,7 +216,7 @@ def _each_once(lands: Iterable[Land]) -> tuple[Land, ...]:
     """Returns a landscape in which nothing stands twice, but for single bridges, tunnels and the like."""
     found = list[Land]()
     for land in lands:
-        if land not in found or (land.kind in STRUCTURES and land.count == exactly(1)):
+        if land not in found or (LANDFORMS[land.kind].structure and land.count == exactly(1)):
             found.append(land)
     return tuple(found)
 

@@ -12,9 +12,9 @@ from roadgpt.brief.amount import figure
 from roadgpt.brief.languages import pattern_of
 from roadgpt.brief.plan import SCENE
 from roadgpt.brief.readers.model.slots import LARGEST_SEEN, SLOTS, NumberSlot
-from roadgpt.brief.scene import DOINGS
-from roadgpt.brief.scene import NUMBERS as NUMBERS_OF_SCENES
 from roadgpt.brief.words import Kind, Slope
+from roadgpt.language.table import MANEUVERS
+from roadgpt.language.table import NUMBERS as NUMBERS_OF_SCENES
 from roadgpt.reading import read_text
 
 MULTIPLES = ("2", "0.5", "3", "1.5", "0.333", "4", "0.25", "0.75", "0.667", "2.5", "1.333", "1.25")
@@ -121,6 +121,13 @@ OF_ROADS = TOKENS[: TOKENS.index("//")]
 """All tokens of single roads and changes. Networks for single roads know no other tokens and cannot write a
 plan that needs one."""
 NUMBER_OF = {token: index for index, token in enumerate(TOKENS)}
+
+
+def written(names: Iterable[str]) -> list[str]:
+    """Returns those names of rows of the table of the language that the networks can write."""
+    return [name for name in names if name in NUMBER_OF]
+
+
 WAYS = re.compile(r"(?<=route=)(?:left|right|straight)(?:[+ ](?:left|right|straight))*")
 """The ways of a route through a map. As tokens they follow each other without a "+"."""
 UNIT_OF = {
@@ -146,7 +153,7 @@ NEW = re.compile(r"\badd ")
 def usual_key(doing: str) -> str:
     """Returns the key of the number that stands without one behind an action, such as "decel=" for "brake";
     empty if there is none."""
-    first = next((name for what, its in DOINGS.items() if what == doing for name in its.numbers), "")
+    first = next((name for what, its in MANEUVERS.items() if what == doing for name in its.numbers), "")
     return f"{NUMBERS_OF_SCENES[first].key}=" if first else ""
 
 
@@ -174,7 +181,7 @@ def plan_of(tokens: Iterable[str], slots: Sequence[NumberSlot], is_change: bool 
     for word in with_values(tokens, slots):
         if word in UNIT_OF:
             key = word
-        elif is_change and word in DOINGS:
+        elif is_change and word in MANEUVERS:
             key = usual_key(word)
         elif word not in ("..", "-", "=", "+") and word not in SLOT_TOKENS:
             key = ""

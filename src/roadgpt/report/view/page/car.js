@@ -38,7 +38,7 @@ function makeCar(size, colour = null) {
     return { turning, rolling, steers };
   });
   body.position.set(size.ahead, 0, -size.height);
-  body.scale.set(size.length / car.length, size.width / car.width, 1);
+  body.scale.set(size.length / car.length, size.width / car.width, size.tall || 1);
   group.add(body, shadow(size));
   group.rotation.order = "ZYX";
   const paint = materials[car.glossy[0]];

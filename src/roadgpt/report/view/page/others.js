@@ -138,14 +138,14 @@ const rears = (brakes, x, half, z, wide = 0.22, high = 0.12) => [half, -half].ma
 
 // What is not a car, in the frame of the middle of its box on the ground.
 const LOOKS = {
-  truck({ length: l, width: w, height: h, colour }, brakes) {
+  truck({ length: l, width: w, height: h, colour, paint }, brakes) {
     const [front, half, cab] = [l / 2, w / 2, Math.min(2.3, 0.3 * l)];
     const nose = [[front - cab, 0.55, half], [front - cab, 0.86 * h, 0.94 * half], [front - 0.35, 0.86 * h, 0.92 * half], [front - 0.02, 0.5 * h, half], [front, 0.4, half]];
     const radius = 0.5;
     return {
       solids: [
-        block(l - 0.5, 0.5 * w, 0.3, -0.2, 0.6, DARK), block(l - cab - 0.25, w, h - 1.05, -(cab + 0.25) / 2, 1.05, WHITE),
-        block(l - cab - 0.24, w + 0.02, 0.3, -(cab + 0.25) / 2, 1.3, colour), hull(nose, colour),
+        block(l - 0.5, 0.5 * w, 0.3, -0.2, 0.6, DARK), block(l - cab - 0.25, w, h - 1.05, -(cab + 0.25) / 2, 1.05, paint || WHITE),
+        block(l - cab - 0.24, w + 0.02, 0.3, -(cab + 0.25) / 2, 1.3, paint ? WHITE : colour), hull(nose, paint || colour),
         pane([front - 0.03, 0.51 * h, 0.9 * half], [front - 0.3, 0.8 * h, 0.82 * half]), block(0.7, w + 0.02, 0.24 * h, front - 0.95, 0.53 * h, PANE),
         block(0.08, 0.8 * w, 0.5, front, 0.7, DARK), ...[half - 0.3, 0.3 - half].map((y) => block(0.06, 0.35, 0.16, front + 0.01, 0.6, LAMP, y)),
         block(0.08, w, 0.12, 0.05 - front, 0.55, DARK), ...rears(brakes, -front, half - 0.25, 0.75, 0.4, 0.16),
@@ -153,14 +153,14 @@ const LOOKS = {
       wheels: axles([front - 1.35, -0.22 * l, -0.33 * l], radius, half - 0.16),
     };
   },
-  bus({ length: l, width: w, height: h }, brakes) {
-    const [front, half] = [l / 2, w / 2];
+  bus({ length: l, width: w, height: h, paint }, brakes) {
+    const [front, half, body_] = [l / 2, w / 2, paint || AMBER];
     const body = [[-front, 0.4, half], [-front, h - 0.15, 0.97 * half], [0.2 - front, h, 0.9 * half], [front - 0.4, h, 0.9 * half], [front - 0.1, h - 0.25, 0.97 * half], [front, 0.4, half]];
     const posts = Math.round(l / 1.6);
     return {
       solids: [
-        hull(body, AMBER), block(l - 0.7, w + 0.02, 0.31 * h, -0.1, 0.5 * h, PANE),
-        ...Array.from({ length: posts - 1 }, (_, n) => block(0.09, w + 0.04, 0.31 * h, -front + ((n + 1) * l) / posts, 0.5 * h, AMBER)),
+        hull(body, body_), block(l - 0.7, w + 0.02, 0.31 * h, -0.1, 0.5 * h, PANE),
+        ...Array.from({ length: posts - 1 }, (_, n) => block(0.09, w + 0.04, 0.31 * h, -front + ((n + 1) * l) / posts, 0.5 * h, body_)),
         pane([front - 0.01, 0.33 * h, 0.92 * half], [front - 0.1, 0.84 * h, 0.9 * half]), pane([front - 0.09, 0.86 * h, 0.6 * half], [front - 0.12, 0.92 * h, 0.6 * half], DARK),
         ...[front - 0.9, -0.05 * l].map((x) => block(1.1, 0.03, 0.72 * h, x, 0.42, DARK, -half)), block(l - 0.2, w + 0.01, 0.1, 0, 0.42, DARK),
         ...[half - 0.3, 0.3 - half].map((y) => block(0.06, 0.4, 0.16, front + 0.01, 0.62, LAMP, y)), ...rears(brakes, -front, half - 0.2, 0.8, 0.24, 0.3),
@@ -169,7 +169,7 @@ const LOOKS = {
       wheels: axles([front - 2.6, 3.2 - front], 0.48, half - 0.14),
     };
   },
-  van({ length: l, width: w, height: h }, brakes) {
+  van({ length: l, width: w, height: h, paint }, brakes) {
     const [front, half] = [l / 2, w / 2];
     const body = [
       [-front, 0.35, half], [-front, 0.95 * h, 0.94 * half], [0.12 - front, h, 0.86 * half], [front - 1.75, h, 0.86 * half], [front - 1.5, 0.95 * h, 0.88 * half],
@@ -177,7 +177,7 @@ const LOOKS = {
     ];
     return {
       solids: [
-        hull(body, WHITE), pane([front - 0.84, 0.585 * h, 0.88 * half], [front - 1.46, 0.93 * h, 0.8 * half]),
+        hull(body, paint || WHITE), pane([front - 0.84, 0.585 * h, 0.88 * half], [front - 1.46, 0.93 * h, 0.8 * half]),
         hull([[front - 2.35, 0.58 * h, half + 0.01], [front - 2.35, 0.87 * h, 0.95 * half + 0.01], [front - 1.6, 0.87 * h, 0.95 * half], [front - 1.05, 0.58 * h, half + 0.01]], PANE),
         ...[0.25, -0.25].map((share) => pane([-front, 0.86 * h, 0.16 * w], [-front, 0.6 * h, 0.16 * w])).map((each, n) => { each.position.y = (n ? -0.24 : 0.24) * w; return each; }),
         block(l - 0.1, w + 0.02, 0.16, 0, 0.34, DARK), block(0.06, 0.5 * w, 0.2, front, 0.28 * h, DARK),
@@ -215,20 +215,93 @@ const LOOKS = {
       wheels: [far, -far].map((x) => thinWheel(radius, x, 0.025)),
     };
   },
-  person({ kind, width: w, height: h, colour }) {
-    const [hip, neck, head] = [0.48 * h, 0.82 * h, kind === "child" ? 0.1 * h : 0.075 * h];
-    const [arm, trousers] = [0.42 * w, kind === "child" ? SIGNAL : DENIM];
+  person({ width: w, height: h, colour }) {
+    const isChild = h < 1.4;
+    const [hip, neck, head] = [0.48 * h, 0.82 * h, isChild ? 0.1 * h : 0.075 * h];
+    const [arm, trousers] = [0.42 * w, isChild ? SIGNAL : DENIM];
     return {
       solids: [
         hull([[-0.1 * h * 0.7, hip - 0.02, 0.3 * w], [-0.1 * h * 0.75, neck - 0.03, 0.38 * w], [0, neck, 0.16 * w], [0.07 * h, neck - 0.04, 0.38 * w], [0.06 * h, hip - 0.02, 0.3 * w]], colour),
         rod([0, 0, neck - 0.02], [0.01, 0, neck + 0.04], 0.05, SKIN), ball(head, 0.02, 0, h - head, SKIN), ball(head * 1.02, -0.02, 0, h - head + 0.02, FUR),
-        ...(kind === "child" ? [block(0.12, 0.5 * w, 0.22 * h, -0.14, 0.56 * h, AMBER)] : []),
+        ...(isChild ? [block(0.12, 0.5 * w, 0.22 * h, -0.14, 0.56 * h, AMBER)] : []),
       ],
       limbs: [1, -1].flatMap((side) => [
         limb([0, side * 0.17 * w, hip], side, 0.5, rod([0, 0, 0], [0, 0, 0.05 - hip], 0.045 * h, trousers, 0.03 * h), block(0.14 * h, 0.05 * h, 0.04 * h, 0.03 * h, -hip, RUBBER)),
         limb([0, side * arm, neck - 0.05], -side, 0.4, rod([0, 0, 0], [0.03, 0, -0.36 * h], 0.03 * h, colour, 0.022 * h), ball(0.03 * h, 0.03, 0, -0.38 * h, SKIN)),
       ]),
       stride: 0.8 * h,
+    };
+  },
+  pickup({ length: l, width: w, height: h, colour }, brakes) {
+    const [front, half, bed] = [l / 2, w / 2, 0.38 * l];
+    const cabin = [
+      [bed - front, 0.4, half], [bed - front, 0.92 * h, 0.8 * half], [bed - front + 0.2, h, 0.76 * half], [front - 2.1, h, 0.76 * half],
+      [front - 1.35, 0.6 * h, 0.9 * half], [front - 0.1, 0.54 * h, 0.92 * half], [front, 0.35, 0.9 * half],
+    ];
+    return {
+      solids: [
+        hull(cabin, colour), block(bed, w, 0.14, bed / 2 - front, 0.45, DARK), block(0.08, w, 0.5, 0.04 - front, 0.45, colour),
+        ...[half - 0.05, 0.05 - half].map((y) => block(bed, 0.1, 0.5, bed / 2 - front, 0.45, colour, y)),
+        pane([front - 1.4, 0.62 * h, 0.84 * half], [front - 2.08, 0.95 * h, 0.74 * half]), block(0.06, 0.5 * w, 0.2, front, 0.5, DARK),
+        ...[half - 0.25, 0.25 - half].map((y) => block(0.2, 0.28, 0.16, front - 0.1, 0.75, LAMP, y)), ...rears(brakes, -front, half - 0.1, 0.65, 0.14, 0.3),
+      ],
+      wheels: axles([front - 1.0, 1.15 - front], 0.39, half - 0.12),
+    };
+  },
+  tractor({ length: l, width: w, height: h, colour }, brakes) {
+    const [front, half] = [l / 2, w / 2];
+    return {
+      solids: [
+        block(0.45 * l, 0.36 * w, 0.3 * h, 0.25 * l, 0.3 * h, SIGNAL), block(0.38 * l, 0.5 * w, 0.42 * h, -0.2 * l, 0.5 * h, PANE), block(0.42 * l, 0.56 * w, 0.06 * h, -0.2 * l, 0.94 * h, colour),
+        rod([0.2 * l, 0.1 * w, 0.6 * h], [0.2 * l, 0.1 * w, 0.85 * h], 0.05, DARK), ...rears(brakes, -0.4 * l, 0.3 * w, 0.5 * h),
+        ...[0.12, -0.12].map((y) => block(0.05, 0.2, 0.14, front - 0.05, 0.45 * h, LAMP, y * w)),
+      ],
+      wheels: [...[half - 0.25, 0.25 - half].map((y) => wheel(0.28 * h, 0.9 - front, y, 0.5)), ...[half - 0.3, 0.3 - half].map((y) => wheel(0.2 * h, front - 0.7, y, 0.35))],
+    };
+  },
+  e_scooter({ length: l, height: h, colour }, brakes) {
+    const [far, deck] = [l / 2 - 0.11, 0.12];
+    const stands = LOOKS.person({ width: 0.5, height: h - deck, colour });
+    [...stands.solids, ...stands.limbs.map((limb) => limb.group)].forEach((part) => { part.position.z += deck; part.position.x -= 0.1; });
+    return {
+      ...stands, limbs: stands.limbs.map((limb) => ({ ...limb, swing: 0 })),
+      solids: [
+        ...stands.solids, block(0.75 * l, 0.16, 0.05, 0, 0.08, DARK), rod([far, 0, 0.11], [far - 0.12, 0, 1.05], 0.025, DARK),
+        rod([far - 0.12, -0.22, 1.05], [far - 0.12, 0.22, 1.05], 0.018, DARK), block(0.03, 0.08, 0.05, -far - 0.08, 0.15, brakes), ball(0.04, far - 0.06, 0, 0.95, LAMP),
+      ],
+      wheels: [far, -far].map((x) => thinWheel(0.11, x, 0.03)),
+    };
+  },
+  wheelchair({ width: w, height: h, colour }) {
+    const sat = rider([-0.1, 0.5], [-0.05, 0.5 + 0.55 * (h - 0.5)], [0.2, 0.62], [0.4, 0.16], colour, FUR, 0);
+    return {
+      ...sat, solids: [...sat.solids, block(0.46, 0.46, 0.06, 0, 0.42, DARK), block(0.06, 0.46, 0.45, -0.26, 0.48, DARK), block(0.16, 0.4, 0.04, 0.42, 0.1, METAL)],
+      wheels: [...[0.46 * w, -0.46 * w].map((y) => wheel(0.3, -0.1, y, 0.04)), ...[0.2, -0.2].map((y) => wheel(0.09, 0.35, y, 0.04))],
+    };
+  },
+  pushchair({ length: l, width: w, height: h, colour }) {
+    const walks = LOOKS.person({ width: w, height: h, colour });
+    const behind = -0.3 * l;
+    [...walks.solids, ...walks.limbs.map((limb) => limb.group)].forEach((part) => { part.position.x += behind; });
+    return {
+      ...walks,
+      solids: [
+        ...walks.solids, hull([[0.02 * l, 0.45, 0.22], [0.1 * l, 0.75, 0.24], [0.42 * l, 0.7, 0.22], [0.46 * l, 0.42, 0.18]], DENIM), hull([[0.02 * l, 0.72, 0.24], [0.06 * l, 1.0, 0.22], [0.24 * l, 0.95, 0.22], [0.22 * l, 0.72, 0.24]], DENIM),
+        rod([0.06 * l, -0.2, 0.7], [-0.16 * l, -0.2, 1.05], 0.018, METAL), rod([0.06 * l, 0.2, 0.7], [-0.16 * l, 0.2, 1.05], 0.018, METAL), rod([-0.16 * l, -0.2, 1.05], [-0.16 * l, 0.2, 1.05], 0.02, DARK),
+        ...[[0.08, 0.22], [0.08, -0.22], [0.42, 0.2], [0.42, -0.2]].map(([x, y]) => rod([x * l, y, 0.12], [0.25 * l, y, 0.5], 0.015, METAL)),
+      ],
+      wheels: [[0.08, 0.22], [0.08, -0.22], [0.42, 0.2], [0.42, -0.2]].map(([x, y]) => wheel(0.12, x * l, y, 0.05)),
+    };
+  },
+  dog({ length: l, height: h }) {
+    const legs = [[0.22 * l, 1], [0.22 * l, -1], [-0.3 * l, -1], [-0.3 * l, 1]];
+    return {
+      solids: [
+        hull([[-0.38 * l, 0.5 * h, 0.08], [-0.36 * l, 0.82 * h, 0.1], [0.25 * l, 0.86 * h, 0.11], [0.28 * l, 0.48 * h, 0.1]], WOOD), rod([0.24 * l, 0, 0.78 * h], [0.34 * l, 0, 0.95 * h], 0.08, WOOD),
+        ball(0.1, 0.38 * l, 0, 0.92 * h, WOOD), block(0.14, 0.09, 0.08, 0.46 * l, 0.8 * h, FUR), rod([-0.37 * l, 0, 0.78 * h], [-0.5 * l, 0, 0.98 * h], 0.02, WOOD),
+      ],
+      limbs: legs.map(([x, side], n) => limb([x, side * 0.07, 0.5 * h], n % 2 ? 1 : -1, 0.4, rod([0, 0, 0.03], [0, 0, -0.5 * h], 0.04, WOOD, 0.025))),
+      stride: 0.9,
     };
   },
   animal({ length: l, height: h }) {
@@ -273,13 +346,16 @@ const LOOKS = {
     return { solids: [crate, tape, box, plank] };
   },
 };
-LOOKS.adult = LOOKS.child = LOOKS.person;
+
+// Blue lights on a roof.
+const beacon = ({ length, width, height, blue_light: isBlue }) => (isBlue
+  ? [1, -1].map((side) => block(0.18, 0.3, 0.14, 0.1 * length, height, new THREE.MeshBasicMaterial({ color: 0x2a6bff }), side * 0.25 * width)) : []);
 
 function makeActor(actor) {
   const own = new THREE.Group();
   const brakes = new THREE.MeshLambertMaterial({ color: 0x5a0f12 });
-  const { solids, wheels = [], limbs = [], stride = 1 } = LOOKS[actor.kind](actor, brakes);
-  own.add(...solids, ...[...wheels, ...limbs].map((part) => part.group), shadow({ ...actor, ahead: 0, height: 0 }));
+  const { solids, wheels = [], limbs = [], stride = 1 } = LOOKS[actor.look](actor, brakes);
+  own.add(...solids, ...beacon(actor), ...[...wheels, ...limbs].map((part) => part.group), shadow({ ...actor, ahead: 0, height: 0 }));
   own.rotation.order = "ZYX";
   return {
     group: own,
@@ -324,8 +400,12 @@ function makeContact({ time, x, y, z }) {
 
 function makeOthers(scene) {
   const group = new THREE.Group();
-  const made = scene.others.actors.map((actor, n) =>
-    actor.kind === "car" ? makeCar({ ...actor, ahead: 0, height: 0 }, PAINTS[n % PAINTS.length]) : makeActor(actor));
+  const made = scene.others.actors.map((actor, n) => {
+    if (actor.look !== "car") return makeActor(actor);
+    const car = makeCar({ ...actor, ahead: 0, height: 0, tall: actor.height / 1.5 }, actor.paint || PAINTS[n % PAINTS.length]);
+    if (actor.blue_light) car.group.add(...beacon(actor));
+    return car;
+  });
   const contacts = scene.others.contacts.map(makeContact);
   [...made, ...contacts].forEach((each) => group.add(each.group));
   return {
@@ -349,8 +429,8 @@ function paintOthers(pen, scene, time, px, py, scale) {
     pen.translate(px(x), py(y));
     pen.rotate(-heading);
     pen.beginPath();
-    if (["adult", "child", "animal"].includes(actor.kind)) pen.ellipse(0, 0, long, Math.max(wide, 3), 0, 0, 7);
-    else if (["cones", "barrier", "lost_load"].includes(actor.kind)) pen.rect(-long, -wide, 2 * long, 2 * wide);
+    if (["person", "animal"].includes(actor.group)) pen.ellipse(0, 0, long, Math.max(wide, 3), 0, 0, 7);
+    else if (actor.group === "thing") pen.rect(-long, -wide, 2 * long, 2 * wide);
     else [[-1, -1], [0.6, -1], [1, 0], [0.6, 1], [-1, 1]].forEach(([u, v]) => pen.lineTo(u * long, v * wide));
     pen.closePath();
     pen.fillStyle = actor.colour;
@@ -358,7 +438,7 @@ function paintOthers(pen, scene, time, px, py, scale) {
     pen.lineWidth = 2;
     pen.stroke();
     pen.fill();
-    if (brake && actor.kind in LAMPED) {
+    if (brake && actor.lamps) {
       pen.fillStyle = "#ff2a1f";
       pen.fillRect(-long - 1, -wide, 2.5, 2 * wide);
     }
@@ -366,8 +446,6 @@ function paintOthers(pen, scene, time, px, py, scale) {
   }
   for (const contact of scene.others.contacts) if (time > contact.time - SHOWN) star(pen, px(contact.x), py(contact.y), 8);
 }
-
-const LAMPED = { car: 1, van: 1, truck: 1, bus: 1, motorcycle: 1 };
 
 function star(pen, x, y, size) {
   pen.beginPath();

@@ -1,0 +1,206 @@
+"""Which kinds of road users and weather the words of a text name. The trained networks know the older kinds
+alone: what they have never seen stands before them as the word of the kind that they read instead, and what
+they wrote for it is named afterwards."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from typing import Any, NamedTuple, cast
+
+from roadgpt.brief.languages import FUNCTION_WORDS, language_of, word_set
+from roadgpt.brief.model import Brief
+from roadgpt.brief.readers.model.number_words import plain
+from roadgpt.brief.scene import Role, Scene, usual_weather
+from roadgpt.language.names import ActorKind, WeatherKind
+from roadgpt.language.table import ROAD_USERS, WEATHER, RoadUser, Weather, Words
+
+DENIED = word_set("denying")
+AGAIN = word_set("of_known")
+"""Words before somebody who has been named before."""
+OWN = word_set("of_oneself")
+"""Words before the tested car."""
+
+
+class _Phrase(NamedTuple):
+    """What a phrase names, in one language."""
+
+    name: ActorKind | WeatherKind | None
+    """None: nothing, although a word in it does."""
+    is_many: bool
+    is_seen: bool = True
+    """Whether the networks know it."""
+
+
+class Mention(NamedTuple):
+    """A place in a text that names a kind."""
+
+    name: ActorKind | WeatherKind
+    is_many: bool
+    is_seen: bool
+    language: str
+    start: int
+    end: int
+    before: str
+    """The plain word before it."""
+
+
+def _row_of(name: str) -> RoadUser | Weather:
+    return ROAD_USERS[cast("ActorKind", name)] if name in ROAD_USERS else WEATHER[cast("WeatherKind", name)]
+
+
+def known_as(name: str) -> Any:
+    """Returns the kind of road user or weather that the networks write for one."""
+    return _row_of(name).read_as or name
+
+
+def words_of(name: str, language: str) -> list[tuple[str, str]]:
+    """Returns the words that mean a kind in a language, one and many."""
+    row = _row_of(name)
+    also = row.also.get(language, ()) if isinstance(row, RoadUser) else ()
+    return [*row.words.get(language, ()), *also]
+
+
+@cache
+def _phrases(language: str) -> tuple[re.Pattern[str], Mapping[str, _Phrase]]:
+    """Returns the pattern of all phrases of a language, and what each of them names."""
+    found: dict[str, _Phrase] = {}
+
+    def add(
+        words: Words,
+        name: ActorKind | WeatherKind | None,
+        known: Sequence[tuple[str, str]] = (),
+        is_seen: bool = True,
+    ) -> None:
+        for pair in words.get(language, ()):
+            for is_many, phrase in enumerate(pair):
+                for each in [own[is_many] for own in known] if "{}" in phrase else [""]:
+                    found.setdefault(plain(phrase.format(each)), _Phrase(name, bool(is_many), is_seen))
+
+    for kind, row in ROAD_USERS.items():
+        known = words_of(row.read_as, language) if row.read_as else []
+        add(row.words, kind, known)
+        add(row.also, kind, known)
+        add(row.unseen, kind, known, is_seen=False)
+        add(row.none, None)
+    for air, weather in WEATHER.items():
+        add(weather.words, air)
+        add(weather.unseen, air, is_seen=False)
+        add(weather.none, None)
+    longest = sorted(found, key=len, reverse=True)
+    return re.compile(rf"(?<![\w-])(?:{'|'.join(map(re.escape, longest))})(?![\w-])"), found
+
+
+def mentions_in(words: str) -> Iterator[Mention]:
+    """Yields what the words name, in the order of the text."""
+    said = plain(words)
+    for language in _languages(said):
+        pattern, phrases = _phrases(language)
+        for found in pattern.finditer(said):
+            name, is_many, is_seen = phrases[found[0]]
+            before = re.findall(r"\w+", said[: found.start()])[-1:]
+            if name is not None:
+                place = *found.span(), before[0] if before else ""
+                yield Mention(name, is_many, is_seen, language, *place)
+        if pattern.search(said):
+            return
+
+
+def _languages(said: str) -> list[str]:
+    """Returns the language of a text; all of them, if none of its words tells it."""
+    words = {*re.findall(r"[^\W\d_]+", said)}
+    is_told = any(words & its for its in FUNCTION_WORDS.values())
+    return [language_of(words)] if is_told else [*FUNCTION_WORDS]
+
+
+def with_known_words(words: str) -> tuple[str, dict[str, str]]:
+    """Returns the words with those of kinds that the networks know in place of others that they have never
+    seen, and what was written for each of them."""
+    instead = dict[str, str]()
+    for mention in reversed([*mentions_in(words)]):
+        if not mention.is_seen:
+            known = words_of(known_as(mention.name), mention.language)[0][mention.is_many]
+            instead[known] = words[mention.start : mention.end]
+            words = words[: mention.start] + known + words[mention.end :]
+    return words, instead
+
+
+def with_kinds(brief: Brief, words: str) -> Brief:
+    """Returns a Brief whose scene has the kinds that the words name, where the networks wrote the kind that
+    they know; and the weather that they do not write. Where it is not clear who of several is meant, the kind
+    stays as it is, and the word counts as unused."""
+    named, scene, unused = [*mentions_in(words)], brief.scene, [*brief.unused]
+    told = _once_each([each for each in named if each.name in ROAD_USERS])
+    kinds = {place: role.kind for place, role in enumerate(scene.actors)}
+    for known in dict.fromkeys(known_as(each.name) for each in told):
+        those = [each for each in told if known_as(each.name) == known]
+        places = [place for place, role in enumerate(scene.actors) if role.kind == known]
+        kinds |= _renamed(known, places or _unnamed(known, scene, told), those, words, unused)
+    airs = {each.name for each in named if each.name in WEATHER and each.before not in DENIED}
+    for air in (each for each in WEATHER if each in airs and WEATHER[each].read_as):
+        amount = scene.amount_of(known_as(air)) or usual_weather(air).amount
+        if known_as(air) not in airs:
+            scene = scene.with_weather(known_as(air), None)
+        scene = scene.with_weather(air, amount)
+    used = {plain(words[each.start : each.end]) for each in named if each.name in airs}
+    unused = [word for word in unused if plain(word) not in used]
+    scene = _with_kinds(scene, [kinds[place] for place in sorted(kinds)])
+    return brief.model_copy(update={"scene": scene, "unused": tuple(dict.fromkeys(unused))})
+
+
+def _unnamed(known: ActorKind, scene: Scene, told: list[Mention]) -> list[int]:
+    """Returns the places of actors of a like kind that the words do not name: a network took the word for
+    theirs, as it may read a pickup as a truck."""
+    named = {known_as(each.name) for each in told}
+    group = ROAD_USERS[known].group
+    alike = [place for place, role in enumerate(scene.actors) if ROAD_USERS[role.kind].group == group]
+    return [place for place in alike if scene.actors[place].kind not in named]
+
+
+def _once_each(told: list[Mention]) -> list[Mention]:
+    """Returns the mentions without the tested car, and without those of somebody who was named before."""
+    out: list[Mention] = []
+    for each in told:
+        is_again = each.before in AGAIN and any(each.name == one.name for one in out)
+        if not is_again and each.before not in (*OWN, *DENIED):
+            out.append(each)
+    return out
+
+
+def _renamed(
+    known: ActorKind, places: list[int], told: list[Mention], words: str, unused: list[str]
+) -> dict[int, ActorKind]:
+    """Returns the kinds of those actors that the networks read as one kind that they know."""
+    new = [each for each in told if each.name != known]
+    names = [cast("ActorKind", each.name) for each in (told if len(told) == len(places) else new)]
+    if len({*names}) == 1 and len(told) == len(new):
+        names = names[:1] * len(places)
+    said = [words[each.start : each.end] for each in new]
+    if names and len(names) == len(places):
+        unused[:] = [word for word in unused if word not in said]
+        return dict(zip(places, names, strict=True))
+    unused += said
+    return {}
+
+
+def _with_kinds(scene: Scene, kinds: list[ActorKind]) -> Scene:
+    """Returns the scene with other kinds of its actors; events name the same ones as before."""
+    now = {
+        _number(scene.actors, place): (kind, kinds[: place + 1].count(kind))
+        for place, kind in enumerate(kinds)
+    }
+    actors = []
+    for role, kind in zip(scene.actors, kinds, strict=True):
+        actions = []
+        for action in role.actions:
+            mark = action.at
+            if mark and (mark.of, mark.number) in now:
+                of, number = now[cast("ActorKind", mark.of), mark.number]
+                mark = mark.model_copy(update={"of": of, "number": number})
+            actions.append(action.model_copy(update={"at": mark}))
+        actors.append(role.model_copy(update={"kind": kind, "actions": tuple(actions)}))
+    return scene.model_copy(update={"actors": tuple(actors)})
+
+
+def _number(actors: tuple[Role, ...], place: int) -> tuple[ActorKind, int]:
+    kind = actors[place].kind
+    return kind, [each.kind for each in actors[: place + 1]].count(kind)

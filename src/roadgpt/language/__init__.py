@@ -1,0 +1,1 @@
+"""The table of the language: its rows, and what asks them."""
