@@ -6,17 +6,7 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from roadgpt.brief.amount import Amount, between, exactly
-from roadgpt.brief.scene import (
-    ON_ITS_WAY,
-    Action,
-    Air,
-    Land,
-    Lie,
-    Mark,
-    Role,
-    Scene,
-    Side,
-)
+from roadgpt.brief.scene import ON_ITS_WAY, Action, Air, Land, Lie, Mark, Role, Scene, Side
 from roadgpt.language.names import Flow, Landform, Light, Surface, What, Where
 from roadgpt.language.table import LANDFORMS, MANEUVERS, NUMBERS, PLACES, WEATHER
 from strategies import amounts, maybe

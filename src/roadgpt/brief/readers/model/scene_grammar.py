@@ -29,15 +29,7 @@ from roadgpt.brief.readers.model.grammar import (
     sequel,
 )
 from roadgpt.brief.readers.model.vocabulary import RAINS, WISHES, value_of, written
-from roadgpt.brief.scene import (
-    LAND_KINDS,
-    ON_ITS_WAY,
-    ONE_OF,
-    Land,
-    Lie,
-    Patch,
-    Role,
-)
+from roadgpt.brief.scene import LAND_KINDS, ON_ITS_WAY, ONE_OF, Land, Lie, Patch, Role
 from roadgpt.brief.words import Compass, Surroundings
 from roadgpt.language.names import What, Where
 from roadgpt.language.table import (
