@@ -307,7 +307,9 @@ def test_help_answers_at_once(words: list[str]) -> None:
     heavy = {*HEAVY} - {"pydantic"} if "roadgpt.cli.commands" in loaded else {*HEAVY}
     assert not {name for name in loaded if name.split(".")[0] in heavy}  # options are made from models
     rooms_used = {name.split(".")[1] for name in loaded if name.startswith("roadgpt.")}
-    light = {"brief", "chat", "ground", "language", "road"} if "roadgpt.cli.commands" in loaded else set[str]()
+    light = (
+        {"brief", "chat", "ground", "language", "road"} if "roadgpt.cli.commands" in loaded else set[str]()
+    )
     assert rooms_used <= {"cli", *light, *HALLWAY}
 
 

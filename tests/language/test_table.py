@@ -86,6 +86,6 @@ def test_one_and_several_are_english() -> None:
     assert said["bus"] == ("a bus", "buses")
     assert said["deer"] == ("a deer", "deer")
     assert said["cones"] == ("cones", "cones")
-    assert said["e_scooter"] == ("an e scooter", "e scooters")
+    assert said["e_scooter"] == ("an e-scooter", "e-scooters")
     assert said["articulated_lorry"] == ("an articulated lorry", "articulated lorries")
-    assert said["person_with_pushchair"] == ("a person with pushchair", "persons with pushchairs")
+    assert said["person_with_pushchair"] == ("a person with a pushchair", "persons with pushchairs")

@@ -60,6 +60,7 @@ class RoadUser:
     look: str
     key: str
     read_as: ActorKind | None = None
+    said: str = ""
     many: str = ""
     speed: float | None = None
     pull: float | None = None
@@ -248,7 +249,7 @@ def one_of(kind: ActorKind) -> str:
     """Returns one of a kind in words, such as "an adult"."""
     if kind == several_of(kind) and kind in THINGS:
         return kind
-    return f"{'an' if kind[0] in 'aeiou' else 'a'} {kind.replace('_', ' ')}"
+    return ROAD_USERS[kind].said or f"{'an' if kind[0] in 'aeiou' else 'a'} {kind.replace('_', ' ')}"
 
 
 def several_of(kind: ActorKind) -> str:

@@ -242,7 +242,7 @@ const LOOKS = {
       solids: [
         hull(cabin, colour), block(bed, w, 0.14, bed / 2 - front, 0.45, DARK), block(0.08, w, 0.5, 0.04 - front, 0.45, colour),
         ...[half - 0.05, 0.05 - half].map((y) => block(bed, 0.1, 0.5, bed / 2 - front, 0.45, colour, y)),
-        pane([front - 1.4, 0.62 * h, 0.84 * half], [front - 2.08, 0.95 * h, 0.74 * half]), block(0.06, 0.5 * w, 0.2, front, 0.5, DARK),
+        pane([front - 1.4, 0.62 * h, 0.84 * half], [front - 2.08, 0.95 * h, 0.74 * half]), block(0.04, 1.3 * half, 0.22 * h, bed - front, 0.68 * h, PANE), block(0.06, 0.5 * w, 0.2, front, 0.5, DARK),
         ...[half - 0.25, 0.25 - half].map((y) => block(0.2, 0.28, 0.16, front - 0.1, 0.75, LAMP, y)), ...rears(brakes, -front, half - 0.1, 0.65, 0.14, 0.3),
       ],
       wheels: axles([front - 1.0, 1.15 - front], 0.39, half - 0.12),
@@ -348,14 +348,14 @@ const LOOKS = {
 };
 
 // Blue lights on a roof.
-const beacon = ({ length, width, height, blue_light: isBlue }) => (isBlue
-  ? [1, -1].map((side) => block(0.18, 0.3, 0.14, 0.1 * length, height, new THREE.MeshBasicMaterial({ color: 0x2a6bff }), side * 0.25 * width)) : []);
+const blueLights = ({ length, width, height, blue_light: isBlue }) => (isBlue
+  ? [1, -1].map((side) => block(0.18, 0.3, 0.26, 0.06 * length, height - 0.16, new THREE.MeshBasicMaterial({ color: 0x2a6bff }), side * 0.25 * width)) : []);
 
 function makeActor(actor) {
   const own = new THREE.Group();
   const brakes = new THREE.MeshLambertMaterial({ color: 0x5a0f12 });
   const { solids, wheels = [], limbs = [], stride = 1 } = LOOKS[actor.look](actor, brakes);
-  own.add(...solids, ...beacon(actor), ...[...wheels, ...limbs].map((part) => part.group), shadow({ ...actor, ahead: 0, height: 0 }));
+  own.add(...solids, ...blueLights(actor), ...[...wheels, ...limbs].map((part) => part.group), shadow({ ...actor, ahead: 0, height: 0 }));
   own.rotation.order = "ZYX";
   return {
     group: own,
@@ -403,7 +403,7 @@ function makeOthers(scene) {
   const made = scene.others.actors.map((actor, n) => {
     if (actor.look !== "car") return makeActor(actor);
     const car = makeCar({ ...actor, ahead: 0, height: 0, tall: actor.height / 1.5 }, actor.paint || PAINTS[n % PAINTS.length]);
-    if (actor.blue_light) car.group.add(...beacon(actor));
+    if (actor.blue_light) car.group.add(...blueLights(actor));
     return car;
   });
   const contacts = scene.others.contacts.map(makeContact);
