@@ -95,7 +95,7 @@ function makeWeather(scene, world, { dome, wood, lights: [ambient, direct], car,
     direct.position.copy(way);
     world.add(disc, veil);
   }
-  world.add(...drops);
+  drops.forEach((each) => world.add(each));
   return {
     show(camera, away, time) {
       if (extinction > 0) world.fog.density = Math.log(20) / (Math.log(20) / extinction + 4 * away);
