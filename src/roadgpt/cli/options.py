@@ -780,7 +780,7 @@ def choice_of(values: dict[str, Any]) -> str | None:
 
 
 def choices_said() -> str:
-    """Returns the ``CHOICES`` as text, such as '--worst, --faults or --failures'."""
+    """Returns the ``CHOICES`` as text, such as '--worst or --failures'."""
     last, *others = (each.flag for each in _of_analyses()["CHOICES"])
     return f"{', '.join(reversed(others))} or {last}"
 

@@ -134,7 +134,7 @@ def progress(
     terminal as lines, or nothing if ``has_lines`` is False.
 
     Yields a function to call with the number of finished steps, and with ``total``, a new total, or ``rate``,
-    a text after the numbers. ``what`` names the steps, such as 'faults'; a ``total`` of None is unknown."""
+    a text after the numbers. ``what`` names the steps, such as 'failures'; a ``total`` of None is unknown."""
     if quiet or not (has_lines or sys.stderr.isatty()):
         yield lambda *_, **__: None
     elif not sys.stderr.isatty():

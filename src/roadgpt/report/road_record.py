@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.brief.outline import outline
+from roadgpt.campaign.columns import ToldNumber, features_in, told_of
 from roadgpt.check import inspect
 from roadgpt.check.measures import measure
 from roadgpt.check.truth import Criterion, Truth, criteria_of
@@ -58,6 +59,7 @@ class RoadRecord:
     versions: Mapping[str, str] = field(default_factory=dict)
     """Versions of RoadGPT and of the libraries that made the run, by name."""
     friction: float | None = None  # friction coefficient of the road; None if it is not known
+    numbers: tuple[ToldNumber, ...] = ()  # those of the plug-ins ``columns`` that are told
 
     @property
     def is_driven(self) -> bool:
@@ -164,6 +166,7 @@ def _record_of(run: Run, truth: Truth | None, features: Mapping[str, float]) -> 
         features=features,
         versions=run.versions,
         friction=run.world.site.friction,
+        numbers=told_of(features_in(run, told_alone=True)),
     )
 
 

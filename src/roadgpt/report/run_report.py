@@ -6,9 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from roadgpt.campaign.columns import told_of
 from roadgpt.campaign.folder_record import open_record
-from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import no_failure
 from roadgpt.errors import UsageError
 from roadgpt.plural import plural
@@ -66,8 +64,8 @@ def write_run_report(folder: Path, command: str = "") -> Path:
     outcomes = Counter(road.outcome for road in part.roads)
     far = _least(part.roads, "FAIL") if setup.keep_driving else None
     sentences = sentences_of(parts, world, near_and_far(_least(part.roads, "PASS"), far))
+    sections += numbers(part.roads)
     with open_record(folder) as record:
-        sections += numbers(record)
         sections, sentences = with_chapters(record, sections, [*no_failure(outcomes), *sentences])
     sections[:0] = filter(None, [overview(parts, world.site.map_size)])
     page = Page(
@@ -167,14 +165,13 @@ def comparisons_of(parts: Sequence[RoadGroup], world: World, between: Sequence[T
     ]
 
 
-def numbers(record: Record) -> list[Section]:
+def numbers(roads: Sequence[RoadRecord]) -> list[Section]:
     """Returns the section on the numbers of tests that plug-ins ``columns`` tell, if there are any."""
-    tests = [*record.results(where="tests.number <= ?", values=(MOST_NAMED,))]
-    told = [{its.key: its.value for its in told_of(each.features)} for each in tests]
+    told = [{its.key: its.value for its in road.numbers} for road in roads[:MOST_NAMED]]
     keys = [*dict.fromkeys(key for own in told for key in own)]
     rows = [
-        row(each.number, each.outcome, *(decimal(own.get(key)) for key in keys))
-        for each, own in zip(tests, told, strict=True)
+        row(road.index, road.outcome, *(decimal(own.get(key)) for key in keys))
+        for road, own in zip(roads, told, strict=False)
     ]
     table = Table("numbers", f"The first {plural(len(rows), 'road')}", ["road", "outcome", *keys], rows)
     return [Section("Numbers of the tests", [table])] if keys else []

@@ -73,23 +73,20 @@ def fault_summaries(folder: Path, found: Faults) -> list[FaultSummary]:
     return summaries
 
 
-def headline(found: Faults, summaries: Sequence[FaultSummary]) -> tuple[str, ...]:
-    """Returns the first sentences of a report: the number of faults and, if ``roadgpt faults`` has repeated
-    tests, the number of faults whose repeated test failed in at least half of the drives."""
-    measured = [each.looked.stability.is_stable for each in summaries if each.looked]
-    sure = f"{sum(measured)} of {len(measured)} that were driven again" if measured else ""
-    what = "faults" if found.distinct else "groups"
-    again = [f"Of the {what}, {sure} fail every second time or oftener."] if sure else []
-    return as_sentence(found.headline), *again
-
-
 def chapter(record: Record) -> Chapter | None:
-    """Returns the chapter on distinct faults; None if no road failed."""
+    """Returns the chapter on distinct faults, whose sentences tell how many there are and, if ``roadgpt
+    faults`` has repeated tests, how many failed again in at least half of the drives; None if no road
+    failed."""
     found = faults_in(record.folder, COMPARED)
     if not found.failures:
         return None
     summaries = fault_summaries(record.folder, found)
-    return Chapter(section(record.folder, found, summaries), headline(found, summaries), is_first=True)
+    said = [as_sentence(found.headline)]
+    if measured := [each.looked.stability.is_stable for each in summaries if each.looked]:
+        sure = f"{sum(measured)} of {len(measured)} that were driven again"
+        what = "faults" if found.distinct else "groups"
+        said.append(f"Of the {what}, {sure} fail every second time or oftener.")
+    return Chapter(section(record.folder, found, summaries), tuple(said), is_first=True)
 
 
 def section(folder: Path, found: Faults, summaries: Sequence[FaultSummary]) -> Section:
