@@ -28,7 +28,8 @@ class Columns:
     told: Mapping[str, Told] = field(default_factory=dict)
     """The columns that are also told, by name, in the order in which they are told."""
     bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    """The ranges of the columns that may be axes of a feature map; values beyond belong to its edge."""
+    """The ranges of those that may be axes of feature maps in tables and reports; values beyond belong to the
+    edge."""
 
 
 class ToldNumber(NamedTuple):
