@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import get_args
 
-from roadgpt.brief.model import Kind, Sharpness, Size, Slope
 from roadgpt.brief.words import FEATURE, KINDS, ROAD, SHARPNESS, SIZES, SLOPES
+from roadgpt.language.names import Kind, Sharpness, Size, Slope
 from roadgpt.language.table import SURFACES
 
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "words.md"

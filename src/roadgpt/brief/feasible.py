@@ -8,7 +8,7 @@ from math import inf, radians
 from roadgpt.brief.amount import meets
 from roadgpt.brief.design_speed import SpeedLimits, limits_at
 from roadgpt.brief.map_fit import ROAD_WIDTH, check_room, least_length
-from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, Clause, Slope, exactly, span
+from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, Clause, exactly, span
 from roadgpt.brief.normal import BUMPS, SINGLE, STRAIGHT, clauses_turn, normal, total, turns_of
 from roadgpt.brief.outline import outline, slopes_of_bump
 from roadgpt.brief.ranges import Range, overlap
@@ -35,6 +35,7 @@ from roadgpt.brief.words import (
     USUAL_MAP,
 )
 from roadgpt.errors import BriefError
+from roadgpt.language.names import Slope
 
 LARGEST_ANGLE = 240.0  # degrees; a longer turn would cross its own beginning
 SMALLEST_ANGLE = 10.0  # degrees; a smaller turn is measured as straight

@@ -14,7 +14,6 @@ from roadgpt.brief.junctions import (
     SIZES,
     SKEW,
     JunctionClause,
-    JunctionKind,
     MapClause,
     is_about,
 )
@@ -23,6 +22,7 @@ from roadgpt.brief.plan import junction_plan, map_plan
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import ROAD_LENGTH_SLACK
 from roadgpt.errors import BriefError
+from roadgpt.language.names import JunctionKind
 
 POSSIBLE: dict[JunctionKind, tuple[str, ...]] = {
     "t_junction": ("left", "right", "straight"),

@@ -10,59 +10,31 @@ from pydantic import Field, field_validator, model_validator
 
 from roadgpt.brief.amount import Amount, Frozen, about, exactly, span
 from roadgpt.brief.ranges import Range
+from roadgpt.language.names import (
+    Control,
+    IslandSize,
+    JunctionKind,
+    LaneKind,
+    MapJunctionKind,
+    RampKind,
+    Take,
+)
+from roadgpt.language.table import ROADS
 
-PlainKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout"]
-"""The named kinds of junctions that have no ramps."""
-MapJunctionKind = Literal[PlainKind, "junction"]
-JunctionKind = Literal[MapJunctionKind, "merge", "diverge", "lane_drop", "lane_gain", "lane_change"]
-LaneKind = Literal["lane_drop", "lane_gain", "lane_change"]
-RAMPS: tuple[JunctionKind, ...] = ("merge", "diverge")
+RAMPS: tuple[JunctionKind, ...] = get_args(RampKind)
 LANE_KINDS: tuple[JunctionKind, ...] = get_args(LaneKind)
 """The kinds that are not junctions: a lane ends, a lane begins, or the route changes to another lane."""
-Take = Literal[
-    "left",
-    "right",
-    "straight",
-    "back",
-    "sharp_left",
-    "sharp_right",
-    "slight_left",
-    "slight_right",
-    "ramp",
-    "main",
-]
 Side = Literal["left", "right"]
 Way = Literal["left", "right", "straight"]
-Control = Literal["priority", "yield", "stop", "lights", "none"]
-IslandSize = Literal["mini", "normal", "large"]
-
 NAMES: Mapping[JunctionKind, tuple[str, ...]] = {
-    "t_junction": ("T-junction", "side road"),
-    "y_junction": ("Y-junction", "fork"),
-    "crossroads": ("crossroads", "intersection"),
-    "star": ("star junction", "five-way junction"),
-    "roundabout": ("roundabout", "traffic circle"),
-    "junction": ("junction",),
-    "merge": ("merge", "motorway entry"),
-    "diverge": ("motorway exit", "off-ramp"),
-    "lane_drop": ("lane drop", "end of a lane"),
-    "lane_gain": ("lane gain", "additional lane"),
-    "lane_change": ("lane change",),
+    kind: tuple(row["names"]) for kind, row in ROADS["junctions"].items()
 }
-"""The English words for each kind; RoadGPT's own texts use the first one.
-
-The kind "junction" means that the description names no kind; any kind but a roundabout is then possible."""
+"""The English words for each kind; RoadGPT's own texts use the first one."""
 MAP = "map"
 ROUTE = "route"
 LONGEST_ROUTE = 12  # junctions
 ONE = exactly(1)
-SIGNS: Mapping[Control, str] = {
-    "priority": "roads with priority",
-    "yield": "give-way signs",
-    "stop": "stop signs",
-    "lights": "traffic lights",
-    "none": "no signs",
-}
+SIGNS: Mapping[Control, str] = ROADS["controls"]
 """The signs or lights at the junctions of a map, in words."""
 
 
@@ -188,27 +160,10 @@ class MapClause(Frozen):
         return junctions.control or self.control
 
 
-ARMS: Mapping[JunctionKind, Range] = {
-    "t_junction": Range(3, 3),
-    "y_junction": Range(3, 3),
-    "crossroads": Range(4, 4),
-    "star": Range(5, 6),
-    "roundabout": Range(3, 6),
-    "junction": Range(3, 6),
-    "merge": Range(3, 3),
-    "diverge": Range(3, 3),
-    **dict.fromkeys(LANE_KINDS, Range(2, 2)),
-}
+ARMS: Mapping[JunctionKind, Range] = {kind: Range(*row["arms"]) for kind, row in ROADS["junctions"].items()}
 """The number of arms of each kind, including the road on which the route arrives."""
-SIZES: Mapping[IslandSize, Range] = {
-    "mini": Range(13, 25),
-    "normal": Range(26, 45),
-    "large": Range(46, 70),
-}
-"""The range of the outer diameter of a roundabout in metres, for each word for its size.
-
-CD 116 Geometric design of roundabouts (National Highways) calls a roundabout of less than 28 m "compact" or
-"mini"; the other limits are usual figures."""
+SIZES: Mapping[IslandSize, Range] = {size: Range(*ends) for size, ends in ROADS["islands"].items()}
+"""The range of the outer diameter of a roundabout in metres, for each word for its size."""
 ACROSS = Range(18, 70)
 """The outer diameters in metres with which roundabouts can be built."""
 SKEW = 70.0  # degrees; crossroads with a smaller angle between two neighbouring arms are skew

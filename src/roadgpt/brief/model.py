@@ -13,18 +13,8 @@ from roadgpt.brief.design_speed import FASTEST, SLOWEST, USUAL
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, MapClause, Side
 from roadgpt.brief.ranges import Range, nearest
 from roadgpt.brief.scene import Scene
-from roadgpt.brief.words import (
-    LARGEST_MAP,
-    MOST_LANES,
-    SMALLEST_MAP,
-    Bump,
-    Compass,
-    Kind,
-    Sharpness,
-    Size,
-    Slope,
-    Surroundings,
-)
+from roadgpt.brief.words import LARGEST_MAP, MOST_LANES, SMALLEST_MAP, Compass, Surroundings
+from roadgpt.language.names import Bump, Kind, Sharpness, Size, Slope
 
 __all__ = [
     "OTHER_SIDE",

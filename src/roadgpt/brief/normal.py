@@ -9,8 +9,18 @@ for none, unless it asks for '0 or more turns'."""
 from collections.abc import Iterable, Sequence
 from math import inf
 
-from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, Clause, Kind, Side, Slope, at_least, exactly, span
+from roadgpt.brief.model import (
+    OTHER_SIDE,
+    Amount,
+    Brief,
+    Clause,
+    Side,
+    at_least,
+    exactly,
+    span,
+)
 from roadgpt.brief.words import KINDS
+from roadgpt.language.names import Kind, Slope
 
 STRAIGHT: frozenset[Kind] = frozenset({"straight", "crest", "dip"})
 BUMPS: frozenset[Kind] = frozenset({"crest", "dip"})

@@ -12,7 +12,7 @@ from typing import Any, Literal, TypeVar
 from roadgpt.brief.amount import about
 from roadgpt.brief.design_speed import SpeedLimits, limits_at
 from roadgpt.brief.map_fit import has_low_grades, has_wide_turns
-from roadgpt.brief.model import Amount, Brief, Clause, Kind, Side, Slope, span
+from roadgpt.brief.model import Amount, Brief, Clause, Side, span
 from roadgpt.brief.normal import (
     BUMPS,
     SHAPED,
@@ -37,10 +37,10 @@ from roadgpt.brief.words import (
     SIZES,
     SLOPES,
     STEEPEST,
-    Bump,
     Quantity,
     heading_from,
 )
+from roadgpt.language.names import Bump, Kind, Slope
 
 SMALLEST_TURN = 12.0  # degrees; a bend of less than 10 is not measured as a turn
 SMALLEST_OF_MOST = 0.6  # "turns of at most 20 degrees" have at least this share of the 20 degrees

@@ -26,15 +26,10 @@ from roadgpt.brief.junctions import (
     LONGEST_ROUTE,
     MAP,
     ROUTE,
-    Control,
-    IslandSize,
     JunctionClause,
     JunctionCount,
-    JunctionKind,
     MapClause,
-    MapJunctionKind,
     Side,
-    Take,
     Way,
 )
 from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Frozen, exactly, span
@@ -52,20 +47,24 @@ from roadgpt.brief.scene import (
     Scene,
     usual_weather,
 )
-from roadgpt.brief.words import (
-    LARGEST_MAP,
-    SMALLEST_MAP,
+from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, Compass, LandKind, Surroundings
+from roadgpt.errors import BriefError
+from roadgpt.language.names import (
     Bump,
-    Compass,
+    Control,
+    Flow,
+    IslandSize,
+    JunctionKind,
     Kind,
-    LandKind,
+    Light,
+    MapJunctionKind,
     Sharpness,
     Size,
     Slope,
-    Surroundings,
+    Surface,
+    Take,
+    Where,
 )
-from roadgpt.errors import BriefError
-from roadgpt.language.names import Flow, Light, Surface, Where
 from roadgpt.language.table import LANDFORMS, MANEUVERS, NUMBERS, PLACES, ROAD_USERS, WEATHER
 
 KINDS = frozenset(get_args(Kind))

@@ -7,9 +7,10 @@ from typing import Any, get_args
 
 from roadgpt.brief.amount import meets
 from roadgpt.brief.junction_check import faults_of_junction
-from roadgpt.brief.junctions import ARMS, SIGNS, JunctionClause, JunctionKind, Take, Way
+from roadgpt.brief.junctions import ARMS, SIGNS, JunctionClause, Way
 from roadgpt.brief.scene import Role
 from roadgpt.errors import BriefError
+from roadgpt.language.names import JunctionKind, Take
 
 AROUND = ("back", "right", "straight", "left")
 """The arms of a crossroads, from that of the tested car on against the clock."""

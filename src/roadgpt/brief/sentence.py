@@ -6,17 +6,16 @@ from roadgpt.brief.junctions import (
     LANE_KINDS,
     NAMES,
     SIGNS,
-    Control,
     JunctionClause,
     JunctionCount,
     MapClause,
-    Take,
     Way,
 )
-from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Slope, at_least, exactly
+from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, at_least, exactly
 from roadgpt.brief.normal import BUMPS, STRAIGHT, normal
 from roadgpt.brief.scene import scene_text
 from roadgpt.brief.words import FEATURE, KINDS, OVER, ROAD, SLOPES
+from roadgpt.language.names import Control, Slope, Take
 from roadgpt.language.table import SURFACES
 
 CENTRES: dict[CentreLine, str] = {

@@ -11,32 +11,14 @@ curvature is averaged over 5 m."""
 from __future__ import annotations
 
 import unicodedata
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import Literal, NamedTuple, get_args
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from math import inf
+from typing import Any, Literal, NamedTuple, get_args
 
 from roadgpt.brief.ranges import Range
-
-Sharpness = Literal["gentle", "sweeping", "sharp"]
-Size = Literal["long", "short"]
-Slope = Literal["up", "down", "flat", "nearly_flat", "gently_up", "gently_down", "steeply_up", "steeply_down"]
-Bump = Literal["crest", "dip"]
-Kind = Literal[
-    "straight",
-    "crest",  # a straight that climbs, then falls
-    "dip",  # a straight that falls, then climbs
-    "turn",
-    "hairpin",
-    "switchback",
-    "u_turn",
-    "s_bend",
-    "chicane",
-    "slalom",
-    "serpentine",
-    "zigzag",
-    "winding",
-]
-
+from roadgpt.language.names import Bump, Kind, Sharpness, Size, Slope
+from roadgpt.language.table import ROADS
 
 MOST_LANES = 4  # in one direction
 LandKind = Literal["flat", "rolling", "hilly", "mountain"]
@@ -72,66 +54,32 @@ class Meaning:
     """The mean grade of the feature in percent, uphill positive."""
 
 
-ONE = Range(1, 1)
-NO_TURN = Range(0, 5)  # degrees: a straight turns no more than this
-LEAST_STRAIGHT = 10.0  # metres: a shorter straight cannot be seen between two turns
+def _range(ends: Sequence[float]) -> Range:
+    low, high, *number = [*ends, inf][: max(len(ends), 2)]
+    return Range(low, high, *number)
 
-KINDS: Mapping[Kind, Meaning] = {
-    "straight": Meaning(("straight",), degrees=NO_TURN, length=Range(LEAST_STRAIGHT)),
-    "crest": Meaning(("crest", "hump", "hilltop"), degrees=NO_TURN, length=Range(LEAST_STRAIGHT)),
-    "dip": Meaning(("dip", "hollow"), degrees=NO_TURN, length=Range(LEAST_STRAIGHT)),
-    "turn": Meaning(("turn", "bend", "curve"), ONE, degrees=Range(25, 120)),
-    # many people do not call less than 145 degrees a hairpin
-    "hairpin": Meaning(("hairpin",), ONE, degrees=Range(140, 210), radius=Range(0, 35), aim=Range(150, 207)),
-    "switchback": Meaning(
-        ("switchback",), ONE, alternating=True, degrees=Range(100, 210), aim=Range(145, 207)
-    ),
-    "u_turn": Meaning(("U-turn",), ONE, degrees=Range(150, 210), aim=Range(165, 195)),
-    "s_bend": Meaning(("S-bend", "S-curve"), Range(2, 2), alternating=True, degrees=Range(25, 120)),
-    "chicane": Meaning(
-        ("chicane",), Range(2, 4), alternating=True, degrees=Range(25, 120), radius=Range(0, 30)
-    ),
-    # four tight turns: both common meanings of the word, with and without chicanes, agree with that
-    "slalom": Meaning(
-        ("slalom",), Range(4, 4), alternating=True, degrees=Range(40, 120), radius=Range(0, 30)
-    ),
-    # four turns of 40 degrees are hardly a serpentine; from 65 degrees on they turn 260 degrees in all
-    "serpentine": Meaning(
-        ("serpentine",), Range(4), alternating=True, degrees=Range(40, 210), aim=Range(65, 170)
-    ),
-    "zigzag": Meaning(("zig-zag",), Range(4), alternating=True, degrees=Range(40, 210), aim=Range(65, 170)),
-    "winding": Meaning(("winding", "twisty", "curvy"), Range(3), degrees=Range(25, 120), aim=Range(40, 110)),
-}
 
-SHARPNESS: Mapping[Sharpness, Meaning] = {
-    "gentle": Meaning(
-        ("gentle", "easy", "lazy", "slight"), degrees=Range(15, 90), aim=Range(22, 48), radius=Range(40)
-    ),
-    "sweeping": Meaning(("sweeping", "wide"), degrees=Range(15, 120), aim=Range(22, 80), radius=Range(60)),
-    "sharp": Meaning(
-        ("sharp", "tight", "hard"), degrees=Range(30, 120), aim=Range(35, 115), radius=Range(0, 30)
-    ),
-}
-"""The meanings of words for sharpness. On a map that cannot hold radii of 60 m, a sweeping turn may be as
-tight as a gentle one."""
+def _meanings(part: str) -> dict[Any, Meaning]:
+    """Returns the meanings of the words in a part of the table."""
+    ranges = {each.name for each in fields(Meaning)} - {"names", "alternating"}
+    return {
+        name: Meaning(
+            tuple(row["names"]),
+            alternating=row.get("alternating", False),
+            **{each: _range(row[each]) for each in ranges & row.keys()},
+        )
+        for name, row in ROADS[part].items()
+    }
 
-SIZES: Mapping[Size, Meaning] = {
-    "long": Meaning(("long",), length=Range(60)),
-    "short": Meaning(("short",), length=Range(LEAST_STRAIGHT, 30)),
-}
 
-SLOPES: Mapping[Slope, Meaning] = {
-    "up": Meaning(("uphill", "climbing", "rising"), grade=Range(3, 12)),
-    "down": Meaning(("downhill", "descending", "dropping"), grade=Range(-12, -3)),
-    "flat": Meaning(("flat", "level"), grade=Range(-1, 1, number=0.0)),
-    "nearly_flat": Meaning(("nearly flat", "almost level"), grade=Range(-3.5, 3.5)),
-    "gently_up": Meaning(("gently uphill", "a gentle incline"), grade=Range(2, 5)),
-    "gently_down": Meaning(("gently downhill", "a gentle decline"), grade=Range(-5, -2)),
-    "steeply_up": Meaning(("steeply uphill", "a steep climb"), grade=Range(8, 15)),
-    "steeply_down": Meaning(("steeply downhill", "a steep descent"), grade=Range(-15, -8)),
-}
-
-OVER: Mapping[Bump, str] = {"crest": "over a crest", "dip": "through a dip"}
+KINDS: Mapping[Kind, Meaning] = _meanings("features")
+NO_TURN = _range(ROADS["features"]["straight"]["degrees"])  # degrees: a straight turns no more than this
+LEAST_STRAIGHT = float(ROADS["features"]["straight"]["length"][0])
+"""In metres; a shorter straight cannot be seen between two turns."""
+SHARPNESS: Mapping[Sharpness, Meaning] = _meanings("sharpness")
+SIZES: Mapping[Size, Meaning] = _meanings("sizes")
+SLOPES: Mapping[Slope, Meaning] = _meanings("slopes")
+OVER: Mapping[Bump, str] = ROADS["bumps"]
 """The phrase for a crest or a dip inside a turn."""
 
 LEAST_GRADE = 1.0  # percent: a road that climbs or falls less is level

@@ -30,7 +30,6 @@ from roadgpt.brief.junctions import (
     SIGNS,
     SIZES,
     SKEW,
-    Control,
     JunctionCount,
     MapClause,
     bends_as,
@@ -52,6 +51,7 @@ from roadgpt.check.measures import (
     MeasuredNode,
     Measures,
 )
+from roadgpt.language.names import Control
 from roadgpt.plural import plural
 from roadgpt.road import Profile, Road
 

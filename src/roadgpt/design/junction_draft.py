@@ -26,8 +26,6 @@ from roadgpt.brief.junctions import (
     SIDE,
     SIZES,
     JunctionClause,
-    JunctionKind,
-    PlainKind,
     bends_as,
     is_about,
     side_of,
@@ -42,6 +40,7 @@ from roadgpt.brief.model import (
 )
 from roadgpt.brief.ranges import Range, nearest, overlap
 from roadgpt.brief.words import MOST_LANES, ROAD
+from roadgpt.language.names import JunctionKind, PlainKind
 from roadgpt.network.building import BETWEEN, MOUTH, TURN_TAPER, USUALLY_FED, ring_width, smallest_radius
 from roadgpt.network.building import MOST_LANES as MOST_RING_LANES
 from roadgpt.network.growing import BEFORE_TURN_LANES, controls_of

@@ -26,9 +26,10 @@ from numpy.typing import NDArray
 
 from roadgpt.brief.amount import Amount, exactly, span
 from roadgpt.brief.junction_check import MOST_OF_KIND
-from roadgpt.brief.junctions import Control, JunctionClause, JunctionCount, MapClause, MapJunctionKind
+from roadgpt.brief.junctions import JunctionClause, JunctionCount, MapClause
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.design.junction_draft import drawn_junction
+from roadgpt.language.names import Control, MapJunctionKind
 from roadgpt.network.building import ring_width
 from roadgpt.network.growing import contact_distances
 from roadgpt.network.pose import tangent_length

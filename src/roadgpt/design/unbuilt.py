@@ -5,9 +5,10 @@ from itertools import chain, pairwise
 from typing import TYPE_CHECKING
 
 from roadgpt.brief.amount import span
-from roadgpt.brief.junctions import RAMPS, JunctionClause, JunctionKind
+from roadgpt.brief.junctions import RAMPS, JunctionClause
 from roadgpt.brief.model import Brief
 from roadgpt.errors import DesignError
+from roadgpt.language.names import JunctionKind
 from roadgpt.plural import plural
 
 if TYPE_CHECKING:

@@ -5,21 +5,33 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 TYPES = {
-    "ActorKind": None, "Where": "places", "What": "actions", "Flow": "flows", "WeatherKind": "weather",
-    "Light": "lights", "Surface": "surfaces", "Landform": "landforms",
+    "ActorKind": ("road_users", ""), "Where": ("scenes", "places"), "What": ("scenes", "actions"),
+    "Flow": ("scenes", "flows"), "WeatherKind": ("scenes", "weather"), "Light": ("scenes", "lights"),
+    "Surface": ("scenes", "surfaces"), "Landform": ("scenes", "landforms"), "Kind": ("roads", "features"),
+    "Sharpness": ("roads", "sharpness"), "Size": ("roads", "sizes"), "Slope": ("roads", "slopes"),
+    "Bump": ("roads", "bumps"), "JunctionKind": ("roads", "junctions"), "Control": ("roads", "controls"),
+    "IslandSize": ("roads", "islands"), "Take": ("roads", "takes"),
 }  # fmt: skip
-"""The types of names, and the part of ``scenes.toml`` whose rows have them."""
+"""The types of names, and the file and the part whose rows have them."""
+OF_JUNCTIONS = {
+    "PlainKind": ("plain",), "MapJunctionKind": ("plain", "open"), "RampKind": ("ramp",),
+    "LaneKind": ("lane",),
+}  # fmt: skip
+"""The types of some kinds of junctions, and the groups of these."""
 
 
 def names() -> str:
     """Returns the text of ``names.py``: the names of the rows of the table as types."""
-    tables = ("road_users.toml", "scenes.toml")
-    users, scenes = (tomllib.loads((HERE / name).read_text(encoding="utf-8")) for name in tables)
+    files = ("road_users", "scenes", "roads")
+    tables = {name: tomllib.loads((HERE / f"{name}.toml").read_text(encoding="utf-8")) for name in files}
+    found = {type_: tables[file][part] if part else tables[file] for type_, (file, part) in TYPES.items()}
+    rows = {type_: part.get("rows", [*part]) for type_, part in found.items()}
+    for type_, groups in OF_JUNCTIONS.items():
+        rows[type_] = [name for name, row in found["JunctionKind"].items() if row["group"] in groups]
     lines = ['"""The names in the table, as types. Made by ``python -m roadgpt.language``."""', ""]
     lines += ["from typing import Literal", ""]
-    for type_, part in TYPES.items():
-        rows = [f'    "{name}",' for name in (users if part is None else scenes[part])]
-        lines += [f"{type_} = Literal[", *rows, "]"]
+    for type_, those in rows.items():
+        lines += [f"{type_} = Literal[", *(f'    "{name}",' for name in those), "]"]
     return "\n".join(lines) + "\n"
 
 

@@ -101,3 +101,102 @@ Landform = Literal[
     "embankment",
     "tree_lined",
 ]
+Kind = Literal[
+    "straight",
+    "crest",
+    "dip",
+    "turn",
+    "hairpin",
+    "switchback",
+    "u_turn",
+    "s_bend",
+    "chicane",
+    "slalom",
+    "serpentine",
+    "zigzag",
+    "winding",
+]
+Sharpness = Literal[
+    "gentle",
+    "sweeping",
+    "sharp",
+]
+Size = Literal[
+    "long",
+    "short",
+]
+Slope = Literal[
+    "up",
+    "down",
+    "flat",
+    "nearly_flat",
+    "gently_up",
+    "gently_down",
+    "steeply_up",
+    "steeply_down",
+]
+Bump = Literal[
+    "crest",
+    "dip",
+]
+JunctionKind = Literal[
+    "t_junction",
+    "y_junction",
+    "crossroads",
+    "star",
+    "roundabout",
+    "junction",
+    "merge",
+    "diverge",
+    "lane_drop",
+    "lane_gain",
+    "lane_change",
+]
+Control = Literal[
+    "priority",
+    "yield",
+    "stop",
+    "lights",
+    "none",
+]
+IslandSize = Literal[
+    "mini",
+    "normal",
+    "large",
+]
+Take = Literal[
+    "left",
+    "right",
+    "straight",
+    "back",
+    "sharp_left",
+    "sharp_right",
+    "slight_left",
+    "slight_right",
+    "ramp",
+    "main",
+]
+PlainKind = Literal[
+    "t_junction",
+    "y_junction",
+    "crossroads",
+    "star",
+    "roundabout",
+]
+MapJunctionKind = Literal[
+    "t_junction",
+    "y_junction",
+    "crossroads",
+    "star",
+    "roundabout",
+    "junction",
+]
+RampKind = Literal[
+    "merge",
+    "diverge",
+]
+LaneKind = Literal[
+    "lane_drop",
+    "lane_gain",
+    "lane_change",
+]

@@ -199,6 +199,8 @@ SIZES: Mapping[ActorKind, Size] = {name: row.size for name, row in ROAD_USERS.it
 USUAL_SPEEDS: Mapping[ActorKind, float] = {name: row.speed for name, row in ROAD_USERS.items() if row.speed}
 _WHO: Mapping[str, tuple[ActorKind, ...]] = {"all": tuple(ROAD_USERS), "moving": MOVING, "vehicles": VEHICLES}
 _SCENES = _table("scenes.toml")
+ROADS = _table("roads.toml")
+"""What words for roads require: features, sharpness, sizes, slopes, junctions, signs."""
 ANYWHERE: tuple[Where, ...] = tuple(_SCENES["places"])
 ALONG: tuple[Where, ...] = tuple(_SCENES["sets"]["along"])
 ACROSS: tuple[Where, ...] = tuple(_SCENES["sets"]["across"])

@@ -10,11 +10,12 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import cast
 
-from roadgpt.brief.junctions import Control, PlainKind, side_of
+from roadgpt.brief.junctions import side_of
 from roadgpt.errors import UsageError
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.geometry.curve import wrapped
 from roadgpt.geometry.pieces import joined
+from roadgpt.language.names import Control, PlainKind
 from roadgpt.network.building import (
     FAR,
     USUALLY_FED,

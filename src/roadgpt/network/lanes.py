@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roadgpt.brief.junctions import Control
 from roadgpt.geometry import wrap_angle
 from roadgpt.geometry.curve import Array
+from roadgpt.language.names import Control
 from roadgpt.network.markings import STOP_LINE, gives_way_to_ring, line_before
 from roadgpt.network.network import Connection, Junction, Leg, Network, NetworkRoad, RoadEnd
 from roadgpt.network.paved import GRID, stations_of

@@ -15,9 +15,9 @@ from typing import Any, Literal, NamedTuple, cast
 
 from pydantic import TypeAdapter
 
-from roadgpt.brief.junctions import Control, MapJunctionKind, PlainKind
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
+from roadgpt.language.names import Control, MapJunctionKind, PlainKind
 from roadgpt.network.paved import (
     ISLAND,
     SLIVER,

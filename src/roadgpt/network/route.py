@@ -11,11 +11,11 @@ from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
-from roadgpt.brief.junctions import Control
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.elevation import Cubic, closed
+from roadgpt.language.names import Control
 from roadgpt.network.lane_along import LaneAlong, change_windows, cubics_at, lane_along
 from roadgpt.network.lane_line import along_lanes, continue_each_other
 from roadgpt.network.markings import STOP_LINE, line_before

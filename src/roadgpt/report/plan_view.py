@@ -15,8 +15,8 @@ from matplotlib.path import Path as Outline
 from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
-from roadgpt.brief.junctions import Control
 from roadgpt.geometry.curve import Array
+from roadgpt.language.names import Control
 from roadgpt.network import Network, network_of, only_road
 from roadgpt.network.markings import JunctionSign, arrows, between_crosswalks, signs, strokes
 from roadgpt.network.paved import Area

@@ -3,10 +3,10 @@
 from dataclasses import dataclass, field
 from typing import Literal, cast
 
-from roadgpt.brief.model import Kind, Sharpness, Side, Slope
+from roadgpt.brief.model import Side
 from roadgpt.brief.scene import Action, Scene
+from roadgpt.language.names import Kind, Sharpness, Slope, Where
 from roadgpt.language.names import What as Doing
-from roadgpt.language.names import Where
 
 Noun = Literal["turn", "straight", "end", "start", "road"]
 What = Literal[

@@ -10,12 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
-from roadgpt.brief.junctions import Control
 from roadgpt.export.ego import Poses
 from roadgpt.export.georeference import degrees
 from roadgpt.export.lanelets import LaneletBound, arms_of, lanelets_of
 from roadgpt.export.markup import XmlElement
 from roadgpt.geometry.curve import Array
+from roadgpt.language.names import Control
 from roadgpt.network import Arm, Junction, Network, network_of
 from roadgpt.network.markings import line_to_stop_at, place_of_sign
 from roadgpt.road import Road, World

@@ -16,9 +16,9 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from roadgpt.brief.junctions import Control
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import wrapped
+from roadgpt.language.names import Control
 from roadgpt.network.markings import CROSSWALK, STOP_LINE, line_before
 from roadgpt.network.network import (
     OTHER_CONTACT,

@@ -12,17 +12,7 @@ from typing import get_args
 
 from roadgpt.brief.beside import BESIDE
 from roadgpt.brief.design_speed import FASTEST, SLOWEST
-from roadgpt.brief.junctions import (
-    LANE_KINDS,
-    LONGEST_ROUTE,
-    RAMPS,
-    ROUTE,
-    Control,
-    IslandSize,
-    MapJunctionKind,
-    Side,
-    Take,
-)
+from roadgpt.brief.junctions import LANE_KINDS, LONGEST_ROUTE, RAMPS, ROUTE, Side
 from roadgpt.brief.languages import pattern_of
 from roadgpt.brief.model import CentreLine
 from roadgpt.brief.plan import HALFWAY, ONE_WAY, ROAD_KEYS
@@ -49,7 +39,8 @@ from roadgpt.brief.readers.model.vocabulary import (
     value_of,
 )
 from roadgpt.brief.refusal import CLASHING, OF_CAUSES
-from roadgpt.brief.words import Sharpness, Size, Surroundings
+from roadgpt.brief.words import Surroundings
+from roadgpt.language.names import Control, IslandSize, MapJunctionKind, Sharpness, Size, Take
 
 
 @dataclass(frozen=True, slots=True)

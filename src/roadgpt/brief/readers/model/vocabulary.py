@@ -12,8 +12,8 @@ from roadgpt.brief.amount import figure
 from roadgpt.brief.languages import pattern_of
 from roadgpt.brief.plan import SCENE
 from roadgpt.brief.readers.model.slots import LARGEST_SEEN, SLOTS, NumberSlot
-from roadgpt.brief.words import Kind, Slope
-from roadgpt.language.table import MANEUVERS
+from roadgpt.language.names import Kind, Slope
+from roadgpt.language.table import MANEUVERS, WEATHER
 from roadgpt.language.table import NUMBERS as NUMBERS_OF_SCENES
 from roadgpt.reading import read_text
 
@@ -130,15 +130,16 @@ def written(names: Iterable[str]) -> list[str]:
 
 WAYS = re.compile(r"(?<=route=)(?:left|right|straight)(?:[+ ](?:left|right|straight))*")
 """The ways of a route through a map. As tokens they follow each other without a "+"."""
+IN_TEXTS = {
+    "metres": "metres", "percent": "percent", "km/h": "kmh", "m/s sideways": "kmh", "m/s2": "mps2",
+}  # fmt: skip
+"""The units in which texts give numbers of a scene, by those of the table."""
 UNIT_OF = {
-    "deg=": "degrees", "angle=": "degrees", "r=": "metres", "d=": "metres",
-    "len=": "metres", "taper=": "metres", "climb=": "metres",
-    "turning=": "degrees", "pct=": "percent", "steepest=": "percent", **MEASURED,
-    **dict.fromkeys(("v=", "dv=", "to=", "lat=", "speed="), "kmh"),
-    **dict.fromkeys(("gap=", "lead=", "s=", "away=", "shift=", "t=", "dist=", "fog="), "metres"),
-    **dict.fromkeys(("outer=", "turn_len="), "metres"),
-    **dict.fromkeys(("overlap=", "impact="), "percent"), **dict.fromkeys(("decel=", "accel="), "mps2"),
-    **dict.fromkeys(("thw=", "time=", "ttc=", "for=", "mu=", "rain="), ""),
+    "deg=": "degrees", "angle=": "degrees", "r=": "metres", "d=": "metres", "taper=": "metres",
+    "climb=": "metres", "outer=": "metres", "turn_len=": "metres", "turning=": "degrees", "pct=": "percent",
+    "steepest=": "percent", "speed=": "kmh", **MEASURED,
+    **{f"{each.key}=": IN_TEXTS.get(each.unit, "") for each in NUMBERS_OF_SCENES.values()},
+    **{f"{kind}=": "" if row.falls else "metres" for kind, row in WEATHER.items()},
 }  # fmt: skip
 """The unit of the number after a key, empty where a text gives it in a unit that is not read, such as
 seconds; numbers after other keys are counts."""
