@@ -65,7 +65,7 @@ from roadgpt.language.names import (
     Take,
     Where,
 )
-from roadgpt.language.table import LANDFORMS, MANEUVERS, NUMBERS, PLACES, ROAD_USERS, WEATHER
+from roadgpt.language.table import LANDFORMS, MANEUVERS, NUMBERS, PLACES, ROAD_USERS, ROADS, WEATHER
 
 KINDS = frozenset(get_args(Kind))
 JUNCTIONS: frozenset[str] = frozenset(get_args(JunctionKind))
@@ -76,19 +76,8 @@ BARE: dict[str, str] = dict.fromkeys(("straight", *BUMPS), "length")
 """The field that a number without a key sets, by kind of clause; for turns, the number is their angle."""
 ONE_WAY = "oneway"
 NO_LANE = exactly(0)
-KEYS = {"deg": "degrees", "r": "radius", "len": "length", "pct": "incline"}
-ROAD_KEYS = {
-    "turns": "turns",
-    "lefts": "left",
-    "rights": "right",
-    "turning": "turning",
-    "steepest": "steepest",
-    "climb": "climb",
-    "hills": "hills",
-    "lanes": "lanes",
-    "against": "against",
-    **KEYS,
-}
+KEYS: Mapping[str, Mapping[str, str]] = ROADS["keys"]
+"""The fields of numbers by their keys, of a clause, a road, a junction and a map."""
 OF_WHOLE = {
     "length": "len",
     "left_hand": "left_hand",
@@ -182,7 +171,7 @@ def read_ways(text: str) -> tuple[Way, ...]:
 
 CLAUSE = _Language(
     _words(side=Side, sharpness=Sharpness, size=Size, slope=Slope, bump=Bump, flags=("alternating",)),
-    {**KEYS, "climb": "climb"},
+    KEYS["clause"],
     is_counted=True,
 )
 ROAD = _Language(
@@ -195,7 +184,7 @@ ROAD = _Language(
         ),
         ONE_WAY: ("against", NO_LANE),
     },
-    ROAD_KEYS,
+    KEYS["road"],
     {
         "centre": ("centre", _centre),
         "map_size": ("map_size", _size_of_map),
@@ -213,18 +202,7 @@ JUNCTION = _Language(
         ),
         **{f"side={side}": ("side", side) for side in get_args(Side)},
     },
-    {
-        "deg": "degrees",
-        "angle": "angle",
-        "exit": "exit",
-        "arms": "arms",
-        "r": "radius",
-        "outer": "outer",
-        "lanes": "lanes",
-        "len": "length",
-        "taper": "taper",
-        "turn_len": "turn_length",
-    },
+    KEYS["junction"],
     {
         "ways": ("ways", _sides),
         "in": ("only_in", _sides),
@@ -236,7 +214,7 @@ JUNCTION = _Language(
 )
 MAP_OF_ROADS = _Language(
     _words(control=Control),
-    {"columns": "columns", "rows": "rows", "len": "length", "blocks": "blocks", "dead_ends": "dead_ends"},
+    KEYS["map"],
     {ROUTE: (ROUTE, read_ways)},
     "map",
 )

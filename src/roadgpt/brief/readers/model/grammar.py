@@ -15,7 +15,7 @@ from roadgpt.brief.design_speed import FASTEST, SLOWEST
 from roadgpt.brief.junctions import LANE_KINDS, LONGEST_ROUTE, RAMPS, ROUTE, Side
 from roadgpt.brief.languages import pattern_of
 from roadgpt.brief.model import CentreLine
-from roadgpt.brief.plan import HALFWAY, ONE_WAY, ROAD_KEYS
+from roadgpt.brief.plan import HALFWAY, ONE_WAY
 from roadgpt.brief.readers.model.slots import LARGEST_SEEN, NumberSlot
 from roadgpt.brief.readers.model.vocabulary import (
     FACTORS,
@@ -41,6 +41,7 @@ from roadgpt.brief.readers.model.vocabulary import (
 from roadgpt.brief.refusal import CLASHING, OF_CAUSES
 from roadgpt.brief.words import Surroundings
 from roadgpt.language.names import Control, IslandSize, MapJunctionKind, Sharpness, Size, Take
+from roadgpt.language.table import ROADS
 
 
 @dataclass(frozen=True, slots=True)
@@ -298,7 +299,7 @@ def description(numbers: Numbers) -> Symbol:
         one_of(*SLOPES),
         one_of(*get_args(Surroundings)),
         *map(one_of, ("alternating", "alike", "hard", "motorway", "divided", "left_hand")),
-        *(_road_key(key, numbers) for key in ROAD_KEYS),
+        *(_road_key(key, numbers) for key in ROADS["keys"]["road"]),
         *(sequel(one_of(place), clause, one_of(")")) for place in PLACES),
         _beside(),
         sequel(one_of("centre="), one_of(*get_args(CentreLine))),
