@@ -1,5 +1,6 @@
 """Writes ``names.py`` anew after a row was added to the table: ``python -m roadgpt.language``."""
 
+import textwrap
 import tomllib
 from pathlib import Path
 
@@ -29,9 +30,10 @@ def names() -> str:
     for type_, groups in OF_JUNCTIONS.items():
         rows[type_] = [name for name, row in found["JunctionKind"].items() if row["group"] in groups]
     lines = ['"""The names in the table, as types. Made by ``python -m roadgpt.language``."""', ""]
-    lines += ["from typing import Literal", ""]
+    lines += ["from typing import Literal", "", "# fmt: off"]
     for type_, those in rows.items():
-        lines += [f"{type_} = Literal[", *(f'    "{name}",' for name in those), "]"]
+        names_ = textwrap.fill(", ".join(f'"{name}"' for name in those), 105)
+        lines += [f"{type_} = Literal[", textwrap.indent(names_, "    "), "]"]
     return "\n".join(lines) + "\n"
 
 

@@ -2,201 +2,76 @@
 
 from typing import Literal
 
+# fmt: off
 ActorKind = Literal[
-    "car",
-    "van",
-    "truck",
-    "bus",
-    "motorcycle",
-    "bicycle",
-    "adult",
-    "child",
-    "animal",
-    "cones",
-    "barrier",
-    "lost_load",
-    "pickup",
-    "suv",
-    "police_car",
-    "ambulance",
-    "fire_engine",
-    "tram",
-    "e_scooter",
-    "wheelchair_user",
-    "person_with_pushchair",
-    "dog",
-    "deer",
-    "tractor",
-    "articulated_lorry",
+    "car", "van", "truck", "bus", "motorcycle", "bicycle", "adult", "child", "animal", "cones", "barrier",
+    "lost_load", "pickup", "suv", "police_car", "ambulance", "fire_engine", "tram", "e_scooter",
+    "wheelchair_user", "person_with_pushchair", "dog", "deer", "tractor", "articulated_lorry"
 ]
 Where = Literal[
-    "ahead",
-    "behind",
-    "lane",
-    "far",
-    "oncoming",
-    "crossing",
-    "parked",
-    "ramp",
-    "junction",
-    "crosswalk",
-    "beside",
-    "roundabout",
+    "ahead", "behind", "lane", "far", "oncoming", "crossing", "parked", "ramp", "junction", "crosswalk",
+    "beside", "roundabout"
 ]
 What = Literal[
-    "keep",
-    "brake",
-    "stop",
-    "speed",
-    "follow",
-    "open_gap",
-    "swerve",
-    "drift",
-    "cut_in",
-    "cut_out",
-    "change_lane",
-    "overtake",
-    "merge",
-    "pull_out",
-    "turn_off",
-    "turn_in",
-    "turn_across",
-    "cross",
-    "run_light",
-    "run_sign",
-    "reverse",
-    "wrong_way",
+    "keep", "brake", "stop", "speed", "follow", "open_gap", "swerve", "drift", "cut_in", "cut_out",
+    "change_lane", "overtake", "merge", "pull_out", "turn_off", "turn_in", "turn_across", "cross",
+    "run_light", "run_sign", "reverse", "wrong_way"
 ]
 Flow = Literal[
-    "light",
-    "medium",
-    "dense",
+    "light", "medium", "dense"
 ]
 WeatherKind = Literal[
-    "fog",
-    "rain",
-    "hail",
-    "dust",
+    "fog", "rain", "hail", "dust"
 ]
 Light = Literal[
-    "night",
-    "low_sun",
+    "night", "low_sun"
 ]
 Surface = Literal[
-    "wet",
-    "snow",
-    "ice",
+    "wet", "snow", "ice"
 ]
 Landform = Literal[
-    "valley",
-    "ridge",
-    "lake",
-    "river",
-    "coast",
-    "forest",
-    "town",
-    "bridge",
-    "tunnel",
-    "cutting",
-    "embankment",
-    "tree_lined",
+    "valley", "ridge", "lake", "river", "coast", "forest", "town", "bridge", "tunnel", "cutting",
+    "embankment", "tree_lined"
 ]
 Kind = Literal[
-    "straight",
-    "crest",
-    "dip",
-    "turn",
-    "hairpin",
-    "switchback",
-    "u_turn",
-    "s_bend",
-    "chicane",
-    "slalom",
-    "serpentine",
-    "zigzag",
-    "winding",
+    "straight", "crest", "dip", "turn", "hairpin", "switchback", "u_turn", "s_bend", "chicane", "slalom",
+    "serpentine", "zigzag", "winding"
 ]
 Sharpness = Literal[
-    "gentle",
-    "sweeping",
-    "sharp",
+    "gentle", "sweeping", "sharp"
 ]
 Size = Literal[
-    "long",
-    "short",
+    "long", "short"
 ]
 Slope = Literal[
-    "up",
-    "down",
-    "flat",
-    "nearly_flat",
-    "gently_up",
-    "gently_down",
-    "steeply_up",
-    "steeply_down",
+    "up", "down", "flat", "nearly_flat", "gently_up", "gently_down", "steeply_up", "steeply_down"
 ]
 Bump = Literal[
-    "crest",
-    "dip",
+    "crest", "dip"
 ]
 JunctionKind = Literal[
-    "t_junction",
-    "y_junction",
-    "crossroads",
-    "star",
-    "roundabout",
-    "junction",
-    "merge",
-    "diverge",
-    "lane_drop",
-    "lane_gain",
-    "lane_change",
+    "t_junction", "y_junction", "crossroads", "star", "roundabout", "junction", "merge", "diverge",
+    "lane_drop", "lane_gain", "lane_change"
 ]
 Control = Literal[
-    "priority",
-    "yield",
-    "stop",
-    "lights",
-    "none",
+    "priority", "yield", "stop", "lights", "none"
 ]
 IslandSize = Literal[
-    "mini",
-    "normal",
-    "large",
+    "mini", "normal", "large"
 ]
 Take = Literal[
-    "left",
-    "right",
-    "straight",
-    "back",
-    "sharp_left",
-    "sharp_right",
-    "slight_left",
-    "slight_right",
-    "ramp",
-    "main",
+    "left", "right", "straight", "back", "sharp_left", "sharp_right", "slight_left", "slight_right", "ramp",
+    "main"
 ]
 PlainKind = Literal[
-    "t_junction",
-    "y_junction",
-    "crossroads",
-    "star",
-    "roundabout",
+    "t_junction", "y_junction", "crossroads", "star", "roundabout"
 ]
 MapJunctionKind = Literal[
-    "t_junction",
-    "y_junction",
-    "crossroads",
-    "star",
-    "roundabout",
-    "junction",
+    "t_junction", "y_junction", "crossroads", "star", "roundabout", "junction"
 ]
 RampKind = Literal[
-    "merge",
-    "diverge",
+    "merge", "diverge"
 ]
 LaneKind = Literal[
-    "lane_drop",
-    "lane_gain",
-    "lane_change",
+    "lane_drop", "lane_gain", "lane_change"
 ]
