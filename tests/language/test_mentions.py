@@ -4,6 +4,8 @@ about."""
 
 import pytest
 
+from roadgpt.brief.change import read_request
+from roadgpt.brief.change.staging import changed_scene
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import plan, read_scene, scene_plan
 from roadgpt.brief.readers.model import ModelReader
@@ -47,6 +49,7 @@ def kinds_named(words: str, scene: str) -> tuple[str, tuple[str, ...]]:
         # a network may read a word as another kind of the same group
         ("a pickup truck ahead", "truck ahead", "pickup ahead", ()),
         ("no ambulance, a van behind", "van behind", "van behind", ()),
+        ("without an ambulance, a van behind", "van behind", "van behind", ()),
         # events name the same ones as before
         ("the fire engine brakes, then the lorry ahead of it does",
          "truck behind: brake; truck ahead: brake with truck 1 brake",
@@ -75,4 +78,29 @@ def test_a_word_that_no_network_knows_stands_as_one_that_it_does() -> None:
 def test_readings_of_before_have_the_class_of_the_new_kind() -> None:
     brief = READER.read("a police car ahead brakes hard on a straight road of 300 m, at night")
     assert plan(brief) == "straight | turns=0 len=300 && police_car ahead: brake; night"
+    assert brief.unused == ()
+
+
+@pytest.mark.parametrize(
+    ("words", "left"),
+    [
+        ("remove the dust", "tram ahead v=30: brake decel=4; deer crossing left: cross; hail 5"),
+        ("thicker dust", "tram ahead v=30: brake decel=4; deer crossing left: cross; hail 5; dust 40"),
+        ("remove the tram", "deer crossing left: cross; hail 5; dust 60"),
+        ("the tram shall brake harder",
+         "tram ahead v=30: brake decel=6; deer crossing left: cross; hail 5; dust 60"),
+        ("remove the animal", "tram ahead v=30: brake decel=4; hail 5; dust 60"),
+        ("add a police car oncoming",
+         "tram ahead v=30: brake decel=4; deer crossing left: cross; police_car oncoming; hail 5; dust 60"),
+    ],
+)  # fmt: skip
+def test_requests_change_what_they_name(words: str, left: str) -> None:
+    scene = read_scene("tram ahead v=30: brake 4; deer crossing left: cross; dust 60; hail 5")
+    assert scene_plan(changed_scene(scene, read_request(words).scene, 70.0)) == left
+
+
+@pytest.mark.parametrize("words", ["a straight road without hail", "a straight road without a dust storm"])
+def test_what_is_denied_is_not_there(words: str) -> None:
+    brief = READER.read(words)
+    assert brief.scene.weather == ()
     assert brief.unused == ()

@@ -157,7 +157,8 @@ def _course(driver: Driver, meeting: "_Encounter") -> str:
     gap = (ahead - meeting.stretch - meeting.half[0])[(meeting.clearance < 0) & (ahead > 0)]
     if (apart < 0).any():
         return COLLIDES
-    return f"stops {gap.min():.1f} m short" if len(gap) and not speeds[-1] else "avoids it"
+    is_told = len(gap) and not speeds[-1] and gap.min() >= 0.05
+    return f"stops {gap.min():.1f} m short" if is_told else "avoids it"
 
 
 class _Encounter:

@@ -18,6 +18,7 @@ from roadgpt.language.table import (
     LIGHTS,
     MANEUVERS,
     NUMBERS,
+    ROAD_USERS,
     SURFACES,
     USUAL_SPEEDS,
     WEATHER,
@@ -32,6 +33,7 @@ USUAL: Mapping[str, Mapping[Any, float | None]] = {
     "away": {str(name): row.away for name, row in LANDFORMS.items()},
 }
 """What numbers are where a scene says none, by the kind of what has them."""
+ALIKE = [{kind, row.read_as} for kind, row in ROAD_USERS.items() if row.read_as]
 HIDING = {str(kind) for kind, row in WEATHER.items() if not row.falls}
 CALLED = {
     "ego": "start of the tested car",
@@ -159,13 +161,15 @@ class _Stage:
     def _places(self, target: Things) -> list[int]:
         """Returns the places in their list of the things that are meant."""
         those: Sequence[Any] = getattr(self.before, LISTS[target.name][0])
-        fit = [
-            place
+        there = [
+            (place, getattr(each, "kind", "slippery"))
             for place, each in enumerate(those)
-            if target.name in (getattr(each, "kind", "slippery"), "actor", "landscape")
-            and target.where in (None, getattr(each, "where", None))
+            if target.where in (None, getattr(each, "where", None))
             and target.side in (None, getattr(each, "side", None))
         ]
+        fit = [place for place, kind in there if target.name in (kind, "actor", "landscape")]
+        if not fit:  # a deer may be an animal of the scene, and the other way round
+            fit = [place for place, kind in there if {target.name, kind} in ALIKE]
         if not fit:
             has = "; ".join(map(str, those)) or "nothing of the kind"
             raise EditError(f"the scene has no {_called(target)}; there is: {has}")

@@ -26,7 +26,7 @@ from roadgpt.brief.readers.model.before import (
     other_script,
     without_asides,
 )
-from roadgpt.brief.readers.model.mentions import with_kinds, with_known_words
+from roadgpt.brief.readers.model.mentions import with_kinds, with_kinds_changed, with_known_words
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.number_words import COUNTED, plain
 from roadgpt.brief.readers.model.ring_sizes import with_diameters
@@ -141,6 +141,7 @@ class ModelReader:
         """Returns what a change request asks for, as a plan; raises BriefError if the network wrote none that
         can be read. ``key`` returns the normal form of a plan of changes, or raises an error for an invalid
         one."""
+        written, (words, _) = words, with_known_words(words)
         text = slotted(words, is_change=True)
         trained, weights = self.roads, self._settings["changes"]
         found = scored_plans(trained.network, text, trained.refuse_from, changes_in(key))
@@ -153,10 +154,12 @@ class ModelReader:
         if not found:
             raise BriefError("this could not be read as changes; use shorter sentences")
         draft, *rest = found
-        others = tuple(each.asks for each in rest if each.asks and each.score >= draft.score - LIKELY)
+        near = (each.asks for each in rest if each.asks and each.score >= draft.score - LIKELY)
+        others = tuple(with_kinds_changed(asks, written) for asks in near)
         unused = trained.unused(text, draft.tokens) if draft.asks else ()
         sure = confidence(weights, features(draft, text), unused, text)
-        return ChangeReading(draft.asks or draft.refusal, sure, unused, others)
+        found_plan = with_kinds_changed(draft.asks, written) if draft.asks else draft.refusal
+        return ChangeReading(found_plan, sure, unused, others)
 
     def alternatives(
         self, words: str, number: int = 3, temperature: float = 1.0, seed: int = 0

@@ -9,12 +9,13 @@ from typing import Any, NamedTuple, cast
 
 from roadgpt.brief.languages import FUNCTION_WORDS, language_of, word_set
 from roadgpt.brief.model import Brief
+from roadgpt.brief.plan import SCENE
 from roadgpt.brief.readers.model.number_words import plain
 from roadgpt.brief.scene import Role, Scene, usual_weather
 from roadgpt.language.names import ActorKind, WeatherKind
 from roadgpt.language.table import ROAD_USERS, WEATHER, RoadUser, Weather, Words
 
-DENIED = word_set("denying")
+DENIED, ARTICLES = word_set("denying"), word_set("ones") | word_set("of_known")
 AGAIN = word_set("of_known")
 """Words before somebody who has been named before."""
 OWN = word_set("of_oneself")
@@ -42,6 +43,8 @@ class Mention(NamedTuple):
     end: int
     before: str
     """The plain word before it."""
+    is_denied: bool
+    """Whether it is named as what is not there."""
 
 
 def _row_of(name: str) -> RoadUser | Weather:
@@ -97,10 +100,10 @@ def mentions_in(words: str) -> Iterator[Mention]:
         pattern, phrases = _phrases(language)
         for found in pattern.finditer(said):
             name, is_many, is_seen = phrases[found[0]]
-            before = re.findall(r"\w+", said[: found.start()])[-1:]
+            *rest, last = ["", *re.findall(r"\w+", said[: found.start()])[-2:]]
+            is_denied = last in DENIED or (last in ARTICLES and rest[-1] in DENIED)
             if name is not None:
-                place = *found.span(), before[0] if before else ""
-                yield Mention(name, is_many, is_seen, language, *place)
+                yield Mention(name, is_many, is_seen, language, *found.span(), last, is_denied)
         if pattern.search(said):
             return
 
@@ -135,16 +138,30 @@ def with_kinds(brief: Brief, words: str) -> Brief:
         those = [each for each in told if known_as(each.name) == known]
         places = [place for place, role in enumerate(scene.actors) if role.kind == known]
         kinds |= _renamed(known, places or _unnamed(known, scene, told), those, words, unused)
-    airs = {each.name for each in named if each.name in WEATHER and each.before not in DENIED}
+    airs, beside = {each.name for each in named if each.name in WEATHER and not each.is_denied}, brief.beside
     for air in (each for each in WEATHER if each in airs and WEATHER[each].read_as):
-        amount = scene.amount_of(known_as(air)) or usual_weather(air).amount
-        if known_as(air) not in airs:
-            scene = scene.with_weather(known_as(air), None)
-        scene = scene.with_weather(air, amount)
-    used = {plain(words[each.start : each.end]) for each in named if each.name in airs}
+        known = known_as(air)
+        amount = scene.amount_of(known)
+        is_told = amount is not None and amount != usual_weather(known).amount
+        if known not in airs:
+            scene, beside = scene.with_weather(known, None), tuple(each for each in beside if each != known)
+        scene = scene.with_weather(air, amount if is_told else usual_weather(air).amount)
+    used = {plain(words[each.start : each.end]) for each in named if each.name in airs or each.is_denied}
     unused = [word for word in unused if plain(word) not in used]
     scene = _with_kinds(scene, [kinds[place] for place in sorted(kinds)])
-    return brief.model_copy(update={"scene": scene, "unused": tuple(dict.fromkeys(unused))})
+    changes = {"scene": scene, "beside": beside, "unused": tuple(dict.fromkeys(unused))}
+    return brief.model_copy(update=changes)
+
+
+def with_kinds_changed(plan: str, words: str) -> str:
+    """Returns a plan of changes in which the kinds that the words name stand for those that a network knows;
+    where the words also name one of these, they stay."""
+    road, mark, scene = plan.partition(SCENE)
+    named = {each.name for each in mentions_in(words)}
+    for known in {known_as(name) for name in named} - named:
+        like = [name for name in named if known_as(name) == known]
+        scene = re.sub(rf"\b{known}\b", like[0], scene) if len(like) == 1 else scene
+    return road + mark + scene
 
 
 def _unnamed(known: ActorKind, scene: Scene, told: list[Mention]) -> list[int]:
@@ -161,7 +178,7 @@ def _once_each(told: list[Mention]) -> list[Mention]:
     out: list[Mention] = []
     for each in told:
         is_again = each.before in AGAIN and any(each.name == one.name for one in out)
-        if not is_again and each.before not in (*OWN, *DENIED):
+        if not is_again and not each.is_denied and each.before not in OWN:
             out.append(each)
     return out
 
