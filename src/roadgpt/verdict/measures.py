@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
+EVEN = 0.02  # m/s; speeds that differ by less are equal, but for rounding
 NEAR = 150.0  # m, beyond which others are not measured: 4 s at 130 km/h
 ALONG = 0.5  # m between points of the middle of the lane
 LEAST_STRETCH = 0.2  # lower bound of the metres beside the lane per metre of it, on the inside of a bend
@@ -134,7 +135,7 @@ def measure(road: "Road", drive: "Drive", world: "World") -> Measures:
     faster[near] = its
     gained = np.nan_to_num(np.gradient(faster, STEP, axis=0)[near]) if len(time) > 1 else np.zeros(len(step))
     with np.errstate(divide="ignore", invalid="ignore"):
-        ttc = np.where(ahead & (closing > 0), gap / closing, np.inf)
+        ttc = np.where(ahead & (closing > EVEN), gap / closing, np.inf)
         needed = np.where(ahead, _required(gap, rate, its, gained), 0.0)
     pets = [_pet(time, car, others, step, who == each) for each in range(len(sizes))]
 
