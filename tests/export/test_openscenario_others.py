@@ -8,8 +8,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from exported import LATE, LEAVES, ROADS, WORLD, among_others, asam_says, drive
+from roadgpt.brief.plan import read_scene
 from roadgpt.drive import COLUMNS, Box, Columns, Drive
-from roadgpt.export import Poses, save
+from roadgpt.export import Poses, doubts, save
+from roadgpt.road import Road, World
 from roadgpt.run import Setup, perform
 from roadgpt.run.exporting import export, poses_of
 from roadgpt.traffic import Tracks
@@ -199,3 +201,13 @@ def test_lights_that_ran_are_in_the_file(tmp_path: Path) -> None:
             assert green == {str(way.arrival.road), str(way.departure.road)}
             assert sorted(shown.values()) == ["off;off;on"] * 2 + ["on;off;off"] * 2
     assert time == pytest.approx(2 * (15 + 3 + 2))  # FHWA: two pairs of arms
+
+
+def test_weather_that_the_standard_lacks_is_told() -> None:
+    road = Road.through([[0, 0], [100, 0]])
+    wild, usual = (World(scene=read_scene(scene)) for scene in ("rain; hail; dust", "rain; fog 30"))
+    assert doubts(road, ["openscenario"], wild) == (
+        "openscenario: a scene has one precipitation, so hail is left out",
+        "openscenario: the standard has no dust, so it is written as fog",
+    )
+    assert doubts(road, ["openscenario"], usual) == ()

@@ -58,6 +58,17 @@ class OpenScenario:
     needs_route = True
     holds_others = True
 
+    def doubts(self, road: Road, world: World) -> Iterator[str]:
+        """Says which weather the standard has in another form, or not."""
+        falls = [air.kind for air in world.scene.weather if WEATHER[air.kind].falls]
+        for air in world.scene.weather:
+            row = WEATHER[air.kind]
+            written = row.falls.category if row.falls else "fog"
+            if air.kind in falls[1:]:
+                yield f"a scene has one precipitation, so {air.kind} is left out"
+            elif written != air.kind:
+                yield f"the standard has no {air.kind}, so it is written as {written}"
+
     def save(
         self,
         road: Road,
