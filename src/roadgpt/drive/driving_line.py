@@ -16,14 +16,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from roadgpt.drive.outlook import limits_of
 from roadgpt.drive.view import Command, View
-from roadgpt.road.speed_profile import PathGeometry
+from roadgpt.geometry.curve import LEAST_STRETCH
+from roadgpt.road.speed_profile import GRAVITY, PathGeometry
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
 STEP = 0.5  # m between stations
 BEYOND = 60.0  # m by which the line continues straight beyond the road's end, for drivers that look ahead
-LEAST_STRETCH = 0.2  # lower bound of the metres of line per metre of road, on the inside of a bend
 
 NEAREST = 1.0  # m, lower bound of the distance to the point that pure pursuit steers for
 LAG = 0.12  # s, response time of engine and brakes; the plan is looked up that far ahead
@@ -32,7 +32,6 @@ POWER = 85.0  # W/kg at the wheels
 FULL_BRAKE = 13.0  # m/s^2, deceleration of the brakes with unlimited tyre friction
 DRAG = 3e-4  # 1/m, aerodynamic drag per mass and speed squared
 ROLLING = 0.11  # m/s^2, rolling resistance per mass
-GRAVITY = 9.81  # m/s^2
 GAIN = 1.5  # 1/s, acceleration per speed error
 COAST = 0.3  # m/s^2, demanded deceleration up to which the driver lifts the throttle and does not brake
 

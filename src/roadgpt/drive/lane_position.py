@@ -8,6 +8,7 @@ import numpy as np
 from roadgpt.compiled import compiled, inlined
 from roadgpt.drive.drive import Box, FloatArray
 from roadgpt.drive.sampled_road import CURVATURE, SampledRoad, locate_on, room_at, sample_road, stations_of
+from roadgpt.geometry.curve import LEAST_STRETCH
 
 if TYPE_CHECKING:
     from roadgpt.drive.drive import Drive
@@ -19,7 +20,6 @@ POSE = ("x", "y", "heading", "pitch", "roll", "s")
 """Columns of a Drive that give the pose of the car."""
 ALONG = 9  # points along one side of the body; the error in bends is then at most 5 mm
 SLACK = 0.1  # m, added to the extent across the lane that a bend and the car's roll cause
-LEAST_STRETCH = 0.2  # lower bound of the metres on the inside of a bend per metre of road
 
 
 class LanePolygon(NamedTuple):

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roadgpt.geometry.curve import Array
+from roadgpt.geometry.curve import LEAST_STRETCH, Array
 from roadgpt.road.profile import Profile, superelevation_for
 from roadgpt.road.world import World
 
@@ -26,7 +26,6 @@ GRAVITY = 9.81  # m/s^2
 SLOWEST = 1.0  # m/s: no planned speed is lower, so that a car never stops before a bend
 LIGHTEST = 0.4  # share of gravity that must remain as wheel load on a crest
 LATERAL, BRAKING, TRACTION = 0.64, 0.9, 0.7  # g, of the car for which roads are checked
-LEAST_STRETCH = 0.2  # m of lane per m of road, on the inside of a bend
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
+from roadgpt.geometry.curve import LEAST_STRETCH
 from roadgpt.network import is_route
 from roadgpt.network.lanes import lanes_of
 from roadgpt.road.speed_profile import GRAVITY
@@ -23,7 +24,6 @@ GAINS = 2.0  # m/s^2, with which they gain speed behind it
 SIDEWAYS, SLOWING = 0.75, 0.66  # shares of the friction circle that both take at most
 SMOOTHED = 9  # points that a curvature and a slope are averaged over
 LEAST_GRIP = 0.1  # m/s^2, with which one counts where there is less; ours
-LEAST_STRETCH = 0.2  # lower bound of the metres beside a way per metre of it, on the inside of a bend
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,9 +19,10 @@ import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
+from roadgpt.road.speed_profile import GRAVITY
 from roadgpt.traffic.way import LEAST_GRIP
 
-FULL, JERK = 0.774 * 9.81, 12.65  # m/s^2; m/s^3, with which it is reached in 0.6 s
+FULL, JERK = 0.774 * GRAVITY, 12.65  # m/s^2; m/s^3, with which it is reached in 0.6 s
 DELAY, RELEASED = 0.75, 0.4  # s; m/s^2, with the foot off the accelerator
 CRITICAL = 2.0  # s, of the time to collision
 REACTS, SYSTEM, BESIDE = 0.35, 6.0, 0.5  # Reg157: s, m/s^2, m

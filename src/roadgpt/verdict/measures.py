@@ -30,6 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.geometry import wrap_angle
+from roadgpt.geometry.curve import LEAST_STRETCH
 from roadgpt.network.lanes import HEADROOM
 from roadgpt.traffic.actor import HEADING, SPEED, STEP, X, Y, Z
 from roadgpt.verdict.contact import OUTLINE, middles, separation, turned
@@ -44,7 +45,6 @@ BoolArray = NDArray[np.bool_]
 EVEN = 0.02  # m/s; speeds that differ by less are equal, but for rounding
 NEAR = 150.0  # m, beyond which others are not measured: 4 s at 130 km/h
 ALONG = 0.5  # m between points of the middle of the lane
-LEAST_STRETCH = 0.2  # lower bound of the metres beside the lane per metre of it, on the inside of a bend
 ACROSS = np.sin(np.radians(30.0))
 
 

@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.geometry import wrap_angle
+from roadgpt.geometry.curve import LEAST_STRETCH
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
@@ -33,7 +34,6 @@ ROUNDING = 1e-3  # m, error of the poses in a stored drive, which are rounded
 FloatArray = NDArray[np.float64]
 THINNEST = 1e-9  # m, lower bound of a half-width, for a box seen exactly end-on
 EPSILON = 1e-9  # m; a negative margin is at least this far below 0
-LEAST_STRETCH = 0.2  # lower bound of the metres on the inside of a bend per metre of road
 
 
 class Oracle(NamedTuple):

@@ -14,6 +14,7 @@ from roadgpt.drive.drivers.robot import Robot
 from roadgpt.drive.driving_line import lane_limits, line_along, pedals_for, stations
 from roadgpt.drive.keeping_distance import HARDEST, ROLLS, KeepingDistance, slowed
 from roadgpt.drive.view import Command, View
+from roadgpt.road.speed_profile import GRAVITY
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -28,7 +29,7 @@ FAST, SLOW, MORE, JERK = 20.0, 5.0, 1.5, 2.5
 """Above FAST m/s cruise control brakes with ``hardest``, which takes JERK m/s^3 to build up; below SLOW with
 MORE m/s^2 more, in half of the time: ISO 15622."""
 EMERGENCY = 5.0  # m/s^2: where more is needed, emergency braking begins; the least that UN R152 asks for
-FULL, BUILD_UP = 0.85 * 9.81, 0.6  # m/s^2, s until it is reached: UN R157, Annex 4, Appendix 3, from R152
+FULL, BUILD_UP = 0.85 * GRAVITY, 0.6  # m/s^2, s until it is reached: UN R157, Annex 4, Appendix 3, from R152
 AWAKE, AWAKE_FOR_OTHERS = 9.5 / 3.6, 19.5 / 3.6
 """m/s, from which on there is emergency braking before vehicles, and before persons: 10 and 20 km/h in UN
 R152, less what a test's speed may be off."""

@@ -14,8 +14,7 @@ import numpy as np
 
 from roadgpt.compiled import COMPILES
 from roadgpt.drive.drive import Box
-
-GRAVITY = 9.81  # m/s^2
+from roadgpt.road.speed_profile import GRAVITY
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,8 @@ from roadgpt.compiled import COMPILES, call_at, inlined
 from roadgpt.drive.drive import FloatArray
 from roadgpt.drive.lane_position import LanePolygon
 from roadgpt.drive.sampled_road import SampledRoad, locate_on, room_at
-from roadgpt.drive.simulators.mujoco.car import GRAVITY, Axle, Car
+from roadgpt.drive.simulators.mujoco.car import Axle, Car
+from roadgpt.road.speed_profile import GRAVITY
 
 LOW_SPEED = 2.5  # m/s, below which a damper is added (Pacejka 8.6)
 LOW_SPEED_DAMPING = 0.75  # Ns/m per N of load
@@ -580,7 +581,7 @@ def expected_yaw_rate(
     """Returns the yaw rate in rad/s that the ESC expects for the steering angle. The friction limits this yaw
     rate, and a lag delays it; ``before`` is the value one time step earlier."""
     wanted = speed * math.tan(steer) / (car.wheelbase + car.esc_understeer_gradient * speed * speed)
-    most = FRICTION_USED * friction * 9.81 / max(speed, 1.0)
+    most = FRICTION_USED * friction * GRAVITY / max(speed, 1.0)
     wanted = min(max(wanted, -most), most)
     now: float = before + (wanted - before) * dt / (ESC_LAG + dt)
     return now
