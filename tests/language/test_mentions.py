@@ -10,6 +10,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import plan, read_scene, scene_plan
 from roadgpt.brief.readers.model import ModelReader
 from roadgpt.brief.readers.model.mentions import mentions_in, with_kinds, with_known_words
+from roadgpt.brief.refusal import AnotherRoadError, TooMuchError
 from roadgpt.language.table import ROAD_USERS, WEATHER
 from tables import rows
 
@@ -104,3 +105,17 @@ def test_what_is_denied_is_not_there(words: str) -> None:
     brief = READER.read(words)
     assert brief.scene.weather == ()
     assert brief.unused == ()
+
+
+@pytest.mark.parametrize(
+    ("words", "meant"),
+    [
+        ("a road of 5 km with a tram ahead and forty turns", "tram ahead"),  # too much for the usual map
+        ("a straight road in a dust storm, two bends", "dust 50..200"),  # contradicts itself
+    ],
+)
+def test_what_is_offered_instead_names_them_too(words: str, meant: str) -> None:
+    with pytest.raises((TooMuchError, AnotherRoadError)) as refused:
+        READER.read(words)
+    assert scene_plan(refused.value.brief.scene) == meant
+    assert refused.value.brief.words == words

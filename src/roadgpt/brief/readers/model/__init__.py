@@ -131,9 +131,18 @@ class ModelReader:
         draft = most_plausible(found)
         if draft.asks is not None and draft.asks.map is None and asks_for_a_closed_loop(words):
             raise refused("!impossible loop")
-        brief = self._brief(words, text, draft, trained)
-        unused = tuple(instead.get(word, word) for word in brief.unused)
-        brief = with_kinds(brief.model_copy(update={"words": written, "unused": unused}), written)
+
+        def named(brief: Brief) -> Brief:
+            unused = tuple(instead.get(word, word) for word in brief.unused)
+            return with_kinds(brief.model_copy(update={"words": written, "unused": unused}), written)
+
+        try:
+            brief = named(self._brief(words, text, draft, trained))
+        except TooMuchError as error:
+            raise TooMuchError(str(error), named(error.brief)) from error
+        except AnotherRoadError as error:
+            other = named(error.brief)
+            raise AnotherRoadError(error.offer, plan(other), other) from error
         is_sure = brief.confidence >= SURE
         return brief if is_sure else brief.model_copy(update={"other": _other(found, brief, words, text)})
 

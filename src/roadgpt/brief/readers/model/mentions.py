@@ -11,7 +11,7 @@ from roadgpt.brief.languages import FUNCTION_WORDS, language_of, word_set
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import SCENE
 from roadgpt.brief.readers.model.number_words import plain
-from roadgpt.brief.scene import Role, Scene, usual_weather
+from roadgpt.brief.scene import Scene, usual_weather
 from roadgpt.language.names import ActorKind, WeatherKind
 from roadgpt.language.table import ROAD_USERS, WEATHER, RoadUser, Weather, Words
 
@@ -201,23 +201,19 @@ def _renamed(
 
 def _with_kinds(scene: Scene, kinds: list[ActorKind]) -> Scene:
     """Returns the scene with other kinds of its actors; events name the same ones as before."""
-    now = {
-        _number(scene.actors, place): (kind, kinds[: place + 1].count(kind))
-        for place, kind in enumerate(kinds)
-    }
+    now = dict(zip(_numbered([role.kind for role in scene.actors]), _numbered(kinds), strict=True))
     actors = []
     for role, kind in zip(scene.actors, kinds, strict=True):
         actions = []
         for action in role.actions:
             mark = action.at
             if mark and (mark.of, mark.number) in now:
-                of, number = now[cast("ActorKind", mark.of), mark.number]
-                mark = mark.model_copy(update={"of": of, "number": number})
+                new = now[cast("ActorKind", mark.of), mark.number]
+                mark = mark.model_copy(update=dict(zip(("of", "number"), new, strict=True)))
             actions.append(action.model_copy(update={"at": mark}))
         actors.append(role.model_copy(update={"kind": kind, "actions": tuple(actions)}))
     return scene.model_copy(update={"actors": tuple(actors)})
 
 
-def _number(actors: tuple[Role, ...], place: int) -> tuple[ActorKind, int]:
-    kind = actors[place].kind
-    return kind, [each.kind for each in actors[: place + 1]].count(kind)
+def _numbered(kinds: Sequence[ActorKind]) -> list[tuple[ActorKind, int]]:
+    return [(kind, kinds[: place + 1].count(kind)) for place, kind in enumerate(kinds)]
