@@ -2,7 +2,7 @@
 
     python benchmarks/bench_search.py                  the quick look that `make bench` takes
     python benchmarks/bench_search.py --whole -j 2     10 seeds of 200 tests: the figures of the documents
-    python benchmarks/bench_search.py --whole --folder FOLDER --referee FILE.py --write
+    python benchmarks/bench_search.py --whole --folder FOLDER --referee FILE.py
 
 All have the same number of tests, map, tolerance, driver, car and seeds. What was found is kept in FOLDER,
 one file per setting, method and seed, so an interrupted run goes on. With ``--referee`` every road inside a
@@ -41,9 +41,6 @@ from roadgpt_search.behaviour import BOUNDS
 from roadgpt_search.genetic import Genetic
 from roadgpt_search.quality_diversity import QualityDiversity
 from roadgpt_search.random_drafts import Random
-
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "explanation" / "search.md"
-BEGIN, END = "<!-- measured by benchmarks/bench_search.py -->", "<!-- end of what was measured -->"
 
 CELLS = 25
 MAPS = (("MAX_CURV", "STD_SA"), ("MAX_CURV", "DIR_COV"))
@@ -360,13 +357,6 @@ def middle(values: Sequence[float | None], form: str = "{:.1f}") -> str:
     return form.format(float(np.median(known))) if known else "-"
 
 
-def written(page: Path, lines: Sequence[str]) -> None:
-    """Puts the tables into the document."""
-    text = page.read_text(encoding="utf-8")
-    before, rest = text.split(BEGIN)
-    page.write_text("\n".join([before + BEGIN, "", *lines]) + END + rest.split(END)[1], encoding="utf-8")
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -380,7 +370,6 @@ def main() -> None:
     parser.add_argument("--folder", type=Path, help="where results are kept; none: nowhere")
     parser.add_argument("--referee", help="FILE.py of an outside judge")
     parser.add_argument("-j", "--jobs", type=int, default=2)
-    parser.add_argument("--write", action="store_true", help=f"put the tables into {PAGE.name}")
     asked = parser.parse_args()
     seeds, tests = asked.seeds or (10 if asked.whole else 2), asked.tests or (200 if asked.whole else 60)
     settings = asked.settings or (list(SETTINGS) if asked.whole else ["flat"])
@@ -397,10 +386,7 @@ def main() -> None:
         folder = asked.folder or Path(nowhere)
         folder.mkdir(parents=True, exist_ok=True)
         results = done([*jobs], folder, asked.jobs)
-    lines = [line for setting in settings for line in table(setting, results)]
-    print("\n".join(lines))
-    if asked.write:
-        written(PAGE, lines)
+    print("\n".join(line for setting in settings for line in table(setting, results)))
 
 
 if __name__ == "__main__":

@@ -300,8 +300,7 @@ def _write_card(path: Path, hand: Path, found: "dict[str, list[Reading]]", shown
         f"hand-written, {name}": len(_pairs_of(hand / name)) for name in SPLITS if (hand / name).is_dir()
     }
     first, *others = found
-    told = (WEIGHTS / "training.txt").read_text(encoding="utf-8").strip()
-    text = card(WEIGHTS, counts, found[first], {name: found[name] for name in others}, shown, told)
+    text = card(WEIGHTS, counts, found[first], {name: found[name] for name in others}, shown)
     path.write_text(text, encoding="utf-8")
     click.echo(f"the card is in {path}")
 
