@@ -30,8 +30,7 @@ LIMITS = """\
 - Prompts by different strangers differ by more than readers do: of eight sets of 40, read with much the
   same weights, 27 to 38 were right.
 - The scores below are of single roads. Those of texts of testers, scenes, landscapes and changes, by
-  strangers and with measured truths, are in `training/judge-a-reader.md`.
-"""
+  strangers and with measured truths, are in `training/judge-a-reader.md`."""
 
 
 def card(
