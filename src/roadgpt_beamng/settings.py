@@ -8,58 +8,42 @@ as ROADGPT_BEAMNG_PORT.
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from roadgpt.errors import UsageError, advice_on
+from roadgpt.settings import Row, field, rows_in
 
-OF_USER: dict[str, Any] = {"of_user": True, "open": True}
 PREFIX = "ROADGPT_BEAMNG_"
-PORT = 25252  # BeamNG's default since 0.34
-
-
-def _switch(flag: str, sentence: str, usual: Any) -> Any:
-    return Field(usual, description=sentence, json_schema_extra={"flag": f"--{flag}"})
+ROWS = rows_in(Path(__file__).with_name("options.toml"))["beamng"]
 
 
 class BeamngSettings(BaseModel):
     """All settings of BeamNG, with their defaults."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
+    options: ClassVar[Mapping[str, Row]] = ROWS
     libraries: ClassVar[tuple[str, ...]] = ("beamngpy",)
     """Libraries whose versions are recorded; that of the Python client determines the version of BeamNG."""
 
-    home: Path | None = Field(
-        None, description="Folder of the BeamNG.tech to start (for --simulator beamng)."
-    )
+    home: Path | None = field(ROWS["home"])
     """BeamNG's folder. If it is None, RoadGPT does not start BeamNG, but uses one that is already running."""
-    user: Path | None = Field(
-        None, description="BeamNG's user folder; each further worker gets one next to it."
-    )
-    host: str = Field(
-        "127.0.0.1", description="Host of a BeamNG that is already running.", json_schema_extra=OF_USER
-    )
-    port: int = Field(
-        PORT, ge=1, le=65535, description="Port of BeamNG. [default: 25252]", json_schema_extra=OF_USER
-    )
+    user: Path | None = field(ROWS["user"])
+    host: str = field(ROWS["host"])
+    port: int = field(ROWS["port"])
     """Port of the first worker; the others use the next free ports."""
-    headless: bool = _switch("headless", "Run BeamNG without a window.", False)
-    nogpu: bool = _switch("nogpu", "Run BeamNG without rendering.", False)
+    headless: bool = field(ROWS["headless"])
+    nogpu: bool = field(ROWS["nogpu"])
     """Whether BeamNG runs without graphics; without graphics, drivers that need images cannot be used."""
-    gfx: Literal["dx11", "vk"] | None = _switch("gfx", "Graphics API that BeamNG uses.", None)
-    level: str = Field(
-        "",
-        description="BeamNG level for the roads. [default: SBFT's level tig if installed, else a flat one]",
-    )
+    gfx: Literal["dx11", "vk"] | None = field(ROWS["gfx"])
+    level: str = field(ROWS["level"])
     model: str = "etk800"
-    aggression: float = Field(
-        0.7, ge=0.3, le=1.0, description="Aggression of BeamNG's AI, 0.3 to 1. [default: 0.7]"
-    )
+    aggression: float = field(ROWS["aggression"])
     """Aggression of BeamNG's AI; the default is that of the SBFT competition."""
     rate: Annotated[int, Field(ge=20, le=200)] = 50
     """Physics steps and samples per second."""
-    recycle: int = Field(100, ge=1, description="Restart BeamNG after this many roads. [default: 100]")
+    recycle: int = field(ROWS["recycle"])
     """BeamNG has been seen to fail after about 500 roads (BeamNGpy issue 159)."""
     start_timeout: Annotated[float, Field(gt=0)] = 180.0
     """Seconds within which BeamNG must answer after its start."""

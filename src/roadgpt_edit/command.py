@@ -17,24 +17,23 @@ if TYPE_CHECKING:
     from roadgpt_edit.editing import Edited
 
 
-def _options() -> list[click.Parameter]:
-    return [
-        options.Argument("run", "RUN", "Name the folder of a run, or the file of a design."),
-        options.Argument("words...", "CHANGE",
-                         'Say what to change, such as "make the second turn sharper".'),
-        options.out("Folder for the changed road. [default: a new one]"),
-        options.Option("--plan is_plan", "CHANGE is a plan, such as 'turn 2: radius x0.75'.", bool),
-        options.Option("--reader", "What reads CHANGE: model (neural networks) or chat (a language model).",
-                       click.Choice(["model", "chat"]), "model"),
-        *options.CHAT,
-        *options.named(options.WORLD, "map_size"),
-        *(options.DRIVER_AGAIN, options.NO_DRIVE, options.NO_PLOT, options.FORMAT),
-        *(options.json_option("Print one JSON line.", heading=options.Heading.OUTPUT), options.QUIET),
-    ]  # fmt: skip
+EDIT_OPTIONS: list[click.Parameter] = [
+    options.Argument("run", "RUN", "Name the folder of a run, or the file of a design."),
+    options.Argument("words...", "CHANGE",
+                     'Say what to change, such as "make the second turn sharper".'),
+    options.out("Folder for the changed road. [default: a new one]"),
+    options.Option("--plan is_plan", "CHANGE is a plan, such as 'turn 2: radius x0.75'.", bool),
+    options.Option("--reader", "What reads CHANGE: model (neural networks) or chat (a language model).",
+                   click.Choice(["model", "chat"]), "model"),
+    *options.CHAT,
+    *options.named(options.WORLD, "map_size"),
+    *(options.DRIVER_AGAIN, options.NO_DRIVE, options.NO_PLOT, options.FORMAT),
+    *(options.json_option("Print one JSON line.", heading=options.Heading.OUTPUT), options.QUIET),
+]  # fmt: skip
 
 
 @click.command(
-    cls=options.GroupedCommand, makes=_options, heading="Make",
+    cls=options.GroupedCommand, params=EDIT_OPTIONS, heading="Make",
     short_help="Change a road with a request in plain words.",
 )  # fmt: skip
 def edit(

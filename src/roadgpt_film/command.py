@@ -42,31 +42,30 @@ def _seconds(value: str) -> tuple[float, float | None]:
     return begin, None if end is None else end - begin
 
 
-def _options() -> list[click.Parameter]:
-    return [
-        options.Argument("files...", "RUN [RUN]",
-                         "Name the folder of a run, or two to see them side by side."),
-        options.Option("--view", "Where the camera is: behind the car, on its hood, or both.",
-                       click.Choice(["chase", "hood", "both"]), "chase"),
-        options.Option("--out", f"The film, or the folder for several films. [default: {FILM}, {FILMS}]",
-                       options.PATH, metavar="FILM.mp4"),
-        options.Option("--fps", "Frames per second.", click.IntRange(1, 120), 25, metavar="NUMBER"),
-        options.Option("--size", "Width and height of a frame, pixels.", _size, "640x360", metavar="WxH"),
-        options.Option("--seconds",
-                       "Film only the first N seconds, or seconds FROM to TO. [default: the whole drive]",
-                       _seconds, metavar="N|FROM:TO"),
-        options.Option("--all is_all",
-                       "Film every road in a folder; the film of a run is saved in the run's own folder.",
-                       bool),
-        *options.CHOICES,
-        *options.named(options.WORLD, "map_size", "ground"),
-        *options.named(options.SETUP, "geometry"),
-        options.QUIET,
-    ]  # fmt: skip
+FILM_OPTIONS: list[click.Parameter] = [
+    options.Argument("files...", "RUN [RUN]",
+                     "Name the folder of a run, or two to see them side by side."),
+    options.Option("--view", "Where the camera is: behind the car, on its hood, or both.",
+                   click.Choice(["chase", "hood", "both"]), "chase"),
+    options.Option("--out", f"The film, or the folder for several films. [default: {FILM}, {FILMS}]",
+                   options.PATH, metavar="FILM.mp4"),
+    options.Option("--fps", "Frames per second.", click.IntRange(1, 120), 25, metavar="NUMBER"),
+    options.Option("--size", "Width and height of a frame, pixels.", _size, "640x360", metavar="WxH"),
+    options.Option("--seconds",
+                   "Film only the first N seconds, or seconds FROM to TO. [default: the whole drive]",
+                   _seconds, metavar="N|FROM:TO"),
+    options.Option("--all is_all",
+                   "Film every road in a folder; the film of a run is saved in the run's own folder.",
+                   bool),
+    *options.CHOICES,
+    *options.named(options.WORLD, "map_size", "ground"),
+    *options.named(options.SETUP, "geometry"),
+    options.QUIET,
+]  # fmt: skip
 
 
 @click.command(
-    cls=options.GroupedCommand, makes=_options, heading="Look",
+    cls=options.GroupedCommand, params=FILM_OPTIONS, heading="Look",
     short_help="Film drives: from behind the car, from its hood, or two side by side.",
 )  # fmt: skip
 def film(

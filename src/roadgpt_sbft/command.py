@@ -38,40 +38,39 @@ def _write_client(ctx: click.Context, param: click.Parameter, path: Path | None)
     ctx.exit()
 
 
-def _options() -> list[Option]:
-    return [
-        Option("--module-name", "Python module of the generator.", required=True),
-        Option("--class-name", "Class of the generator.", required=True),
-        Option("--module-path", "Additional folder in which Python looks for the module.",
-               click.Path(exists=True, file_okay=False)),
-        Option("--python", "Interpreter for the generator, with its own libraries; Python 3.8 or later. "
-               "[default: RoadGPT's]"),
-        Option("--time-budget", "Budget in seconds, for generating and driving.",
-               measure(0, 10_000_000, "s", above=True)),
-        Option("--test-budget", "Budget in tests, including invalid ones.", whole(1, 10**7, "tests")),
-        Option("--map-size", "Side of the square map, m.", whole(100, 1000, "metres"), 200),
-        # the competition's own defaults and bounds, which no configuration file changes
-        Option("--oob-tolerance", "Share of the car that may be outside its lane.", measure(0, 1, above=True),
-               0.95, heading=Heading.DRIVE),
-        Option("--speed-limit", "Speed limit, km/h.", measure(10, 300, "km/h"), 70, heading=Heading.DRIVE),
-        named(options.SETUP, "driver")[0].but(default="beamng_like"),
-        *named(options.SETUP, "simulator"),
-        options.seed("Seed for the driver.", 0),
-        Option("--patience", "Seconds that the generator may take for one test.",
-               measure(0, 86_400, "s", above=True), 600),
-        options.out("An empty folder, or a new one. [default: results/MODULE_CLASS_STAMP]"),
-        Option("--plot has_pictures", "Draw every test, and not only the overview.", bool),
-        Option("--no-plot", "Draw nothing.", bool),
-        *(options.AXES, options.FORMAT),
-        Option("--debug", "Log more details of what the generator does.", bool),
-        Option("--client", "Write the Python module that lets the competition run RoadGPT, and exit.",
-               click.Path(dir_okay=False, path_type=Path), is_eager=True, expose_value=False,
-               callback=_write_client),
-        *options.SCREEN,
-    ]  # fmt: skip
+SBFT_OPTIONS: list[Option] = [
+    Option("--module-name", "Python module of the generator.", required=True),
+    Option("--class-name", "Class of the generator.", required=True),
+    Option("--module-path", "Additional folder in which Python looks for the module.",
+           click.Path(exists=True, file_okay=False)),
+    Option("--python", "Interpreter for the generator, with its own libraries; Python 3.8 or later. "
+           "[default: RoadGPT's]"),
+    Option("--time-budget", "Budget in seconds, for generating and driving.",
+           measure(0, 10_000_000, "s", above=True)),
+    Option("--test-budget", "Budget in tests, including invalid ones.", whole(1, 10**7, "tests")),
+    Option("--map-size", "Side of the square map, m.", whole(100, 1000, "metres"), 200),
+    # the competition's own defaults and bounds, which no configuration file changes
+    Option("--oob-tolerance", "Share of the car that may be outside its lane.", measure(0, 1, above=True),
+           0.95, heading=Heading.DRIVE),
+    Option("--speed-limit", "Speed limit, km/h.", measure(10, 300, "km/h"), 70, heading=Heading.DRIVE),
+    named(options.SETUP, "driver")[0].but(default="beamng_like"),
+    *named(options.SETUP, "simulator"),
+    options.seed("Seed for the driver.", 0),
+    Option("--patience", "Seconds that the generator may take for one test.",
+           measure(0, 86_400, "s", above=True), 600),
+    options.out("An empty folder, or a new one. [default: results/MODULE_CLASS_STAMP]"),
+    Option("--plot has_pictures", "Draw every test, and not only the overview.", bool),
+    Option("--no-plot", "Draw nothing.", bool),
+    *(options.AXES, options.FORMAT),
+    Option("--debug", "Log more details of what the generator does.", bool),
+    Option("--client", "Write the Python module that lets the competition run RoadGPT, and exit.",
+           click.Path(dir_okay=False, path_type=Path), is_eager=True, expose_value=False,
+           callback=_write_client),
+    *options.SCREEN,
+]  # fmt: skip
 
 
-@click.command("sbft", cls=GroupedCommand, has_simulators=True, makes=_options)
+@click.command("sbft", cls=GroupedCommand, has_simulators=True, params=SBFT_OPTIONS)
 def sbft_command(
     map_size: int, oob_tolerance: float, speed_limit: float, driver: str, simulator: str, seed: int,
     out: Path | None, has_pictures: bool, no_plot: bool, axes: "Scale", picture_formats: Any,

@@ -30,28 +30,27 @@ PROMPTS = Argument("prompts", "PROMPTS.jsonl", kind=PATH)
 DRIVES = Option("--drive drives", "Drive the roads as well.", bool)
 
 
-def _driven() -> list[Option]:
-    every = (*named(options.SETUP, *SHOWN), *options.WORLD)
-    return [each.but(default=THESIS[each.field]) if each.field in THESIS else each for each in every]
+_DRIVEN = tuple(
+    each.but(default=THESIS[each.field]) if each.field in THESIS else each
+    for each in (*named(options.SETUP, *SHOWN), *options.WORLD)
+)
+
+STUDY_OPTIONS: list[Option] = [
+    DESIGNERS,
+    options.seed("The same seed gives the same files.", 1),
+    options.out("Folder for the study. [default: in roadgpt-runs]"),
+    options.AGAIN,
+    Option("--workers", "Number of descriptions processed in parallel; the files do not depend on it.",
+           whole(1, 64, "processes"), 2),
+    *_DRIVEN,
+    options.FORMAT,
+    Option("--no-plot", "Draw no pictures of single runs.", bool, heading=Heading.FILES),
+    Option("--quiet -q", "Print only errors and the path of the report.", bool, heading=Heading.OUTPUT),
+    *options.CHAT,
+]  # fmt: skip
 
 
-def _study_options() -> list[Option]:
-    return [
-        DESIGNERS,
-        options.seed("The same seed gives the same files.", 1),
-        options.out("Folder for the study. [default: in roadgpt-runs]"),
-        options.AGAIN,
-        Option("--workers", "Number of descriptions processed in parallel; the files do not depend on it.",
-               whole(1, 64, "processes"), 2),
-        *_driven(),
-        options.FORMAT,
-        Option("--no-plot", "Draw no pictures of single runs.", bool, heading=Heading.FILES),
-        Option("--quiet -q", "Print only errors and the path of the report.", bool, heading=Heading.OUTPUT),
-        *options.CHAT,
-    ]  # fmt: skip
-
-
-@click.command(cls=GroupedCommand, params=[ROADS_EACH(100), options.NO_DRIVE], makes=_study_options)
+@click.command(cls=GroupedCommand, params=[ROADS_EACH(100), options.NO_DRIVE, *STUDY_OPTIONS])
 def thesis(no_drive: bool, **rest: Any) -> int:
     """Repeat the evaluation of RoadGPT's thesis: validity, drives, match with descriptions, and diversity.
 
@@ -69,7 +68,7 @@ def thesis(no_drive: bool, **rest: Any) -> int:
     return _study("thesis", thesis_prompts(), "", not no_drive, rest)
 
 
-@click.command(cls=GroupedCommand, params=[PROMPTS, ROADS_EACH(10), DRIVES], makes=_study_options)
+@click.command(cls=GroupedCommand, params=[PROMPTS, ROADS_EACH(10), DRIVES, *STUDY_OPTIONS])
 def alignment(prompts: Path, drives: bool, **rest: Any) -> int:
     """Measure how well roads match their descriptions, criterion by criterion.
 
@@ -153,7 +152,7 @@ def _command(plan: "StudyPlan", place: Path) -> str:
     words = ["study", plan.kind, *([plan.source] if plan.source else [])]
     words += ["--roads", str(plan.roads), "--seed", str(plan.seed), *DESIGNERS.written(plan.designers)]
     told = {*THESIS} | ({"friction"} & plan.world.site.model_fields_set)
-    words += option_words(plan.setup, plan.world, _driven()[: len(SHOWN)], also=told)
+    words += option_words(plan.setup, plan.world, _DRIVEN[: len(SHOWN)], also=told)
     if plan.setup.drives != (plan.kind == "thesis"):
         words.append("--drive" if plan.setup.drives else "--no-drive")
     return command_line(*words, "--out", place)

@@ -10,9 +10,10 @@ from chat.conftest import KEY
 from chat.stub_server import StubServer, says
 from command_line import invoke
 from roadgpt.chat import ChatError, ChatSettings, configured, open_chat
-from roadgpt.chat.config import key_for, settings_with_origin, user_file
+from roadgpt.chat.config import key_for, settings_with_origin
 from roadgpt.chat.model import address_of
 from roadgpt.errors import UsageError
+from roadgpt.settings import user_file
 from tables import rows
 
 

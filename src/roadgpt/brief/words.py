@@ -19,6 +19,7 @@ from typing import Any, Literal, NamedTuple, get_args
 from roadgpt.brief.ranges import Range
 from roadgpt.language.names import Bump, Kind, Sharpness, Size, Slope
 from roadgpt.language.table import ROADS
+from roadgpt.settings import ROWS, span
 
 MOST_LANES = 4  # in one direction
 LandKind = Literal["flat", "rolling", "hilly", "mountain"]
@@ -95,9 +96,9 @@ MOTORWAY_RADIUS = 600.0  # metres, for every turn of 'a motorway' if the map can
 MOTORWAY_GRADE = 5.0  # percent, up or down, at its steepest place
 
 LEAST_RADIUS = 14.326  # metres: 47 ft, the tightest turn of the SBFT competition
-USUAL_MAP = 250.0  # metres along one side, the default: the map of RoadGPT's thesis
+USUAL_MAP = float(ROWS["world"]["map_size"]["default"])  # metres along one side
 LONGEST_ROAD = 50_000.0  # metres
-SMALLEST_MAP, LARGEST_MAP = 50.0, 40_000.0  # metres along one side
+SMALLEST_MAP, LARGEST_MAP = span(ROWS["world"]["map_size"])  # metres along one side
 STEEPEST = 15.0  # percent, up or down: the system prompt of RoadGPT's thesis
 
 PERCENT_SLACK = 1.0  # percentage points, around a grade that was given as a number

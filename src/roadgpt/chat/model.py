@@ -3,9 +3,10 @@
 from typing import Any, Literal, Self
 from urllib.parse import urlsplit
 
-from pydantic import BaseModel, ConfigDict, Field, SerializeAsAny, field_validator
+from pydantic import BaseModel, ConfigDict, SerializeAsAny, field_validator
 
 from roadgpt.provenance import SERVERS
+from roadgpt.settings import CHAT, ROWS, field, span
 
 OPENAI = "https://api.openai.com/v1"
 DOORS = ("/chat/completions", "/models")  # endpoints that a copied base URL may end with
@@ -39,9 +40,9 @@ def origin_of(base_url: str | None) -> Origin:
     return scheme, (parts.hostname or "").lower().rstrip("."), port or PORTS.get(scheme)
 
 
-LEAST_REPLY = 64  # tokens; a shorter answer is of no use
+OPTIONS = ROWS[CHAT]
+LEAST_REPLY = int(span(OPTIONS["max_completion"])[0])  # tokens
 DECIMALS = 9  # of seconds and USD, so that a difference of sums does not depend on earlier costs
-RARE: Any = {"json_schema_extra": {"rare": True}}  # options that only --help-all lists
 Role = Literal["system", "user", "assistant"]
 
 
@@ -121,49 +122,22 @@ class ChatSettings(ChatValue):
     """Which language model to ask, and how. The settings are stored in run folders and never contain an
     API key."""
 
-    provider: str = Field("openai", description="Protocol of the server. [default: openai]", **RARE)
+    provider: str = field(OPTIONS["provider"])
     """Name of an installed provider."""
-    model: str | None = Field(None, description="Name of the model on its server.")
+    model: str | None = field(OPTIONS["model"])
     """With None, the server must have only one model, which is used."""
-    base_url: str | None = Field(
-        None, description="Address of the server, including /v1. [default: OpenAI's]"
-    )
-    temperature: float | None = Field(
-        None, ge=0, le=2, description="Sampling temperature. [default: the server's]", **RARE
-    )
-    timeout: float = Field(
-        60.0, gt=0, le=86_400, description="Seconds to wait for an answer. [default: 60]", **RARE
-    )
-    retries: int = Field(
-        3, ge=0, le=20, description="Further attempts when the server fails. [default: 3]", **RARE
-    )
-    max_completion: int = Field(
-        4096, ge=LEAST_REPLY, le=1_000_000,
-        description="Maximum number of tokens in one answer. [default: 4096]", **RARE,
-    )  # fmt: skip
-    max_tokens: int | None = Field(
-        None, ge=1, description="Stop when all roads together have used this many tokens.", **RARE
-    )
-    max_cost: float | None = Field(
-        None, gt=0, allow_inf_nan=False,
-        description="Stop when the language model has cost this many USD.",
-    )  # fmt: skip
-    price: str | None = Field(
-        None,
-        description="USD per million input and output tokens, such as 0.15/0.60. [default: OpenAI's prices]",
-        **RARE,
-    )
-    record: str | None = Field(
-        None, exclude=True, description="Save every exchange with the server in this folder.", **RARE
-    )
+    base_url: str | None = field(OPTIONS["base_url"])
+    temperature: float | None = field(OPTIONS["temperature"])
+    timeout: float = field(OPTIONS["timeout"])
+    retries: int = field(OPTIONS["retries"])
+    max_completion: int = field(OPTIONS["max_completion"])
+    max_tokens: int | None = field(OPTIONS["max_tokens"])
+    max_cost: float | None = field(OPTIONS["max_cost"], allow_inf_nan=False)
+    price: str | None = field(OPTIONS["price"])
+    record: str | None = field(OPTIONS["record"], exclude=True)
     """Left out of saved files, as is ``replay``, so that a replay writes the same files."""
-    replay: str | None = Field(
-        None, exclude=True, description="Use the answers saved in this folder; ask no server.", **RARE
-    )
-    rounds: int = Field(
-        3, ge=1, le=20,
-        description="Maximum number of requests to the model for one description. [default: 3]", **RARE,
-    )  # fmt: skip
+    replay: str | None = field(OPTIONS["replay"], exclude=True)
+    rounds: int = field(OPTIONS["rounds"])
 
     @field_validator("base_url")
     @classmethod

@@ -1,7 +1,7 @@
 """Options and arguments of commands, the options that several commands share, and commands whose help lists
 them in groups. ``roadgpt config show`` lists those that files can set; its help says which source precedes
-which. The options of the World, the Setup, language models and simulators are made from the models of their
-values.
+which. The options of the World, the Setup, language models and simulators are made from rows of data, as are
+the fields that they set: see ``roadgpt.settings``.
 
 A working folder may come from somebody else. Therefore its files cannot specify a driver's file, a program, a
 server or a plug-in that uses a language model: the user has to give such a value as an option."""
@@ -16,7 +16,7 @@ from functools import cache, partial
 from itertools import chain, takewhile
 from math import inf, isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args, get_origin
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 from click.core import ParameterSource
@@ -24,11 +24,12 @@ from click.core import ParameterSource
 from roadgpt import plugins
 from roadgpt.cli.streams import warn
 from roadgpt.errors import BriefError, UsageError, command_line
+from roadgpt.settings import FOLDER, ROWS, Layer, Row, Setting, span
+from roadgpt.settings import layers as all_layers
 
 if TYPE_CHECKING:
     from roadgpt.campaign.gate import Gate
     from roadgpt.chat import ChatSettings
-    from roadgpt.chat.config import Layer, Setting
     from roadgpt.report import Drawing
     from roadgpt.road import World
 
@@ -192,15 +193,13 @@ class Option(click.Option):
         with self._naming(setting.origin):
             return super().process_value(ctx, value)
 
-    def converted(self, ctx: click.Context, setting: "Setting") -> Any:
+    def converted(self, ctx: click.Context, setting: Setting) -> Any:
         """Returns the value of a setting, converted to the option's type."""
         with self._naming(setting.origin):
             return self.type_cast_value(ctx, setting.value)
 
-    def found(self, layers: "Sequence[Layer]") -> "Setting | None":
+    def found(self, layers: Sequence[Layer]) -> Setting | None:
         """Returns the Setting from the first of the layers that sets the option; None if none does."""
-        from roadgpt.chat.config import FOLDER, Setting
-
         for layer in layers:
             setting = layer.find(self.table, self.key, self.variable)
             if setting is None:
@@ -303,6 +302,7 @@ measure, whole = partial(number, float), partial(number, int)
 HOW_MANY = whole(1, 1_000_000, "the number of roads")
 SEED = whole(0, 2**63 - 1, "a seed")
 PATH = click.Path(path_type=Path)
+NUMBERS: dict[str, Any] = {"float": float, "int": int}
 PICTURES = ("png", "svg", "pdf")  # as report.FORMATS has them, which would load matplotlib
 
 
@@ -462,22 +462,7 @@ KINDS: dict[str, Any] = {
     "driver": driver, "tracks": recording, "lanes": lanes, "bank": bank, "scene": scene, "ground": ground,
     "scenario": scenario,
 }  # fmt: skip
-"""What refuses and what converts the values of fields, where their types do not say it all."""
-ORACLE = Option(
-    "--oracle",
-    "FAIL when more of the car than this is outside its lane: half, sbft (85 %), thesis (95 %), 0.7 ...; "
-    "departure: front tyre over the line.",
-    str, "half", metavar="ORACLE", heading=Heading.DRIVE, table="world",
-)  # fmt: skip
-"""Stands for the two fields of the Limits that are options of their own."""
-WORLD: Sequence[Option]
-"""The options that set fields of the World; made, as all of models, when they are first used."""
-SETUP: Sequence[Option]
-"""The options that set fields of the Setup."""
-CHAT: Sequence[Option]
-"""The options that set fields of ChatSettings; ``roadgpt.chat.config`` looks up those that are not given."""
-MAKING: Sequence[Option]
-"""The options of ``roadgpt run`` that say how roads are made, driven, drawn and exported."""
+"""What refuses and what converts the values of fields, where their rows do not say it all."""
 CHOICES: Sequence[Option]
 """The options that choose tests of a folder: failures, those of analyses, and the worst."""
 AT_END: Sequence[Option]
@@ -492,76 +477,33 @@ class Remarks(NamedTuple):
     fields: Mapping[str, Any] = {}  # in JSON
 
 
-def of_model(
-    model: Any, heading: Heading, table: str = "", stem: str = "", is_rare: bool = False, **more: Any
+def of_rows(
+    rows: Mapping[str, Row], heading: Heading, table: str, stem: str = "", is_rare: bool = False, **more: Any
 ) -> Iterator[Option]:
-    """Yields the options of a pydantic model: one for each field with a ``description``, which is also a key
-    in a table of settings files, and a line of ``roadgpt config show``.
-
-    The field's type, bounds and default are those of the option; its ``json_schema_extra`` may have the
-    ``heading``, ``rare``, ``unit`` (the factor to the option's value), ``within`` (narrower bounds than the
-    model's, in its unit), ``key``, ``flag``, ``open`` (no default: it means that nothing was asked for), and
-    ``of_user``, for what no file of the working folder sets; nor does such a file set folders."""
-    for name, field in model.model_fields.items():
-        if field.description is None:
-            continue
-        kinds, extra = get_args(field.annotation) or (field.annotation,), field.json_schema_extra or {}
-        unit, usual, kind = extra.get("unit", 1.0), field.default, KINDS.get(name)
-        guard = place_guard if extra.get("of_user") else GUARDS.get(name)
-        if "[default:" in field.description or extra.get("open"):
-            usual = None
-        elif isinstance(usual, float):
-            usual = round(usual * unit, 9)
-            usual = int(usual) if usual.is_integer() else usual
-        if kind is None and (get_origin(kinds[0]) is Literal or isinstance(kinds[0], str)):
-            kind = click.Choice([*(kinds if isinstance(kinds[0], str) else get_args(kinds[0]))])
-        elif kinds[0] is Path:
+    """Yields an option for each row of a file like ``roadgpt/options.toml``, by the names of the fields that
+    they set; each is also a key in a table of settings files, and a line of ``roadgpt config show``."""
+    for name, row in rows.items():
+        usual, sentence, kind, guard = row.get("default"), row["help"], KINDS.get(name), GUARDS.get(name)
+        what = row.get("kind", type(usual).__name__)
+        if "choices" in row:
+            kind = click.Choice(row["choices"])
+        elif what == "folder":
             kind, guard = _whole_folder, path_guard
-        elif kinds[0] is bool:
+        elif what == "bool":
             kind = bool
-        elif kind is None and kinds[0] in (int, float):
-            kind = _within(kinds[0], field, extra.get("within"), unit)
+        elif what in NUMBERS and kind is None:
+            (low, high), said = span(row), re.search(r", (km/h|m)\b", sentence)
+            kind = number(NUMBERS[what], low, high, said[1] if said else "", row.get("above") == low)
+        if "[default:" in sentence or "open" in row:
+            usual = None
+        elif isinstance(usual, float) and usual.is_integer():
+            usual = int(usual)
         yield Option(
-            extra.get("flag", f"--{stem}{name.replace('_', '-')}"), field.description, kind, usual,
-            key=extra.get("key", name), heading=Heading(extra.get("heading", heading)), table=table,
-            is_rare=is_rare or "rare" in extra, guard=guard, unit=unit, **more,
+            row.get("flag", f"--{stem}{name.replace('_', '-')}"), sentence, kind, usual,
+            key=row.get("key", name), heading=Heading(row.get("heading", heading)), table=table,
+            unit=row.get("unit", 1.0), is_rare=is_rare or "rare" in row, metavar=row.get("metavar"),
+            guard=place_guard if "of_user" in row else guard, **more,
         )  # fmt: skip
-
-
-def _within(kind: type, field: Any, within: tuple[float, float] | None, unit: float) -> Any:
-    found = {
-        name: getattr(each, name)
-        for each in field.metadata
-        for name in ("gt", "ge", "le")
-        if getattr(each, name, None) is not None
-    }
-    said = re.search(r", (km/h|m)\b", field.description)
-    low, high = within or (found.get("ge", found.get("gt", -inf)), found.get("le", inf))
-    low, high = round(low * unit, 9), round(high * unit, 9)
-    return number(kind, low, high, said[1] if said else "", "gt" in found and low == found["gt"] * unit)
-
-
-@cache
-def _of_models() -> dict[str, tuple[Option, ...]]:
-    from roadgpt.chat.model import ChatSettings
-    from roadgpt.road.world import CrossSection, Limits, Parts, Site, World
-
-    of_world = [
-        each for part in (Site, CrossSection, Limits, World) for each in of_model(part, Heading.SITE, "world")
-    ]
-    order = (
-        "map_size", "scene", "ground", "speed_limit", "oracle", "oob_tolerance", "lane_departure",
-        "avoidable", "lanes", "lane_width", "lane_width_end", "bank", "shoulder", "friction",
-    )  # fmt: skip
-    world = tuple(named([ORACLE, *of_world], *order))
-    names = (
-        "reader", "designer", "driver", "simulator", "keep_driving", "tracks", "scenario", "geometry",
-        "rules",
-    )  # fmt: skip
-    setup = tuple(named([*of_model(Parts, Heading.DESIGN, "run")], *names))
-    making = (*setup[:6], *world, *setup[6:], NO_DRIVE, NO_PLOT, AXES, FORMAT, EXPORT)
-    chat = tuple(of_model(ChatSettings, Heading.MODEL))
-    return {"WORLD": world, "SETUP": setup, "CHAT": chat, "MAKING": making}
 
 
 @cache
@@ -577,8 +519,6 @@ def _of_analyses() -> dict[str, tuple[Option, ...]]:
 
 
 def __getattr__(name: str) -> Any:
-    if name in ("WORLD", "SETUP", "CHAT", "MAKING"):
-        return _of_models()[name]
     if name in ("CHOICES", "AT_END"):
         return _of_analyses()[name]
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
@@ -586,16 +526,25 @@ def __getattr__(name: str) -> Any:
 
 @cache
 def simulator_options() -> tuple[Option, ...]:
-    """Returns the options of all simulators that bring a model of their settings, a plug-in ``settings``:
-    ``--beamng-port`` for the field ``port`` of ``beamng``. Every field can be set in the environment, such as
+    """Returns the options of all simulators that bring settings of their own, a plug-in ``settings``:
+    ``--beamng-port`` for the row ``port`` of ``beamng``. Every field can be set in the environment, such as
     by ROADGPT_BEAMNG_PORT."""
     more: dict[str, Any] = {"is_rare": True, "expose_value": False, "callback": _keep}
     return tuple(
         each
         for name in plugins.names("settings")
-        for each in of_model(plugins.find("settings", name), Heading.SIMULATOR, name, f"{name}-", **more)
+        for each in of_rows(
+            plugins.find("settings", name).options, Heading.SIMULATOR, name, f"{name}-", **more
+        )
     )
 
+
+WORLD = tuple(of_rows(ROWS["world"], Heading.SITE, "world"))
+"""The options that set fields of the World."""
+SETUP = tuple(of_rows(ROWS["run"], Heading.DESIGN, "run"))
+"""The options that set fields of the Setup."""
+CHAT = tuple(of_rows(ROWS["chat"], Heading.MODEL, ""))
+"""The options that set fields of ChatSettings; ``roadgpt.chat.config`` looks up those that are not given."""
 
 # fmt: off
 AXES = _files(
@@ -667,6 +616,8 @@ def formats_option(names: str, sentence: str, **more: Any) -> Option:
 EXPORT = formats_option(
     "--export formats", "Also write road files: opendrive, csv, ...", heading=Heading.FILES, table="run"
 )
+MAKING = (*SETUP[:6], *WORLD, *SETUP[6:], NO_DRIVE, NO_PLOT, AXES, FORMAT, EXPORT)
+"""The options of ``roadgpt run`` that say how roads are made, driven, drawn and exported."""
 _gate = partial(Option, heading=Heading.GATE, is_rare=True)
 GATE = (
     _gate("--fail-on", "Exit status 6 if a road is FAIL, INVALID (or NOT TESTED) or ERROR, or if more than "
@@ -696,13 +647,11 @@ def _keep(ctx: click.Context, option: click.Parameter, value: Any) -> None:
 
 def settable() -> list[Option]:
     """Returns the options that configuration files can set, in the order of ``roadgpt run``."""
-    return [each for each in (*_of_models()["MAKING"], *simulator_options()) if each.table]
+    return [each for each in (*MAKING, *simulator_options()) if each.table]
 
 
 def layers() -> "Sequence[Layer]":
     """Reads all sources of settings, and returns them, highest precedence first; refuses unknown keys."""
-    from roadgpt.chat.config import layers as all_layers
-
     keys: dict[str, list[str]] = {}
     for each in settable():
         keys.setdefault(each.table, []).append(each.key)
@@ -718,8 +667,7 @@ def world_of(values: dict[str, Any]) -> "World":
     """Returns the World that option values describe, and removes them from ``values``; None is not set."""
     from roadgpt.road import World
 
-    of_world = _of_models()["WORLD"]
-    given = {each.field: each.read(values.pop(each.field)) for each in of_world if each.field in values}
+    given = {each.field: each.read(values.pop(each.field)) for each in WORLD if each.field in values}
     if "oracle" in given:  # what is typed precedes what files set, and this the default oracle
         from roadgpt.road.world import oracle_limits
 
@@ -750,7 +698,7 @@ def reader_of(values: dict[str, Any]) -> str:
 
 def chat_values(values: dict[str, Any]) -> dict[str, Any]:
     """Returns the fields of ChatSettings that were given as options."""
-    given = {each.field: each.read(values.get(each.field)) for each in _of_models()["CHAT"]}
+    given = {each.field: each.read(values.get(each.field)) for each in CHAT}
     return {field: value for field, value in given.items() if value is not None}
 
 
@@ -758,7 +706,7 @@ def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "Ch
     """Returns the settings of the language model, or None if neither reader nor designer uses one; removes
     their options from ``values``."""
     told = chat_values(values)
-    for each in _of_models()["CHAT"]:
+    for each in CHAT:
         values.pop(each.field, None)
     from roadgpt.chat import asks_a_model, configured
 
@@ -766,7 +714,7 @@ def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "Ch
     if any(asks_a_model(plugins.find(shelf, name.partition(":")[0])) for shelf, name in shelves if name):
         return configured(told)
     if told:
-        flag = next(each.flag for each in _of_models()["CHAT"] if each.field in told)
+        flag = next(each.flag for each in CHAT if each.field in told)
         raise UsageError(f"{flag} is for language models; give --reader chat as well")
     return None
 
@@ -831,9 +779,13 @@ WHOLE = 20  # a command with at most this many options lists all of them under -
 def _help_all(ctx: click.Context, parameter: click.Parameter, is_asked: bool) -> None:
     del parameter
     if is_asked and not ctx.resilient_parsing:
-        ctx.meta[ALL] = True
-        click.echo(ctx.get_help(), color=ctx.color)
-        ctx.exit()
+        _show_help(ctx, True)
+
+
+def _show_help(ctx: click.Context, is_all: bool) -> None:
+    ctx.meta[ALL] = is_all
+    click.echo(ctx.get_help(), color=ctx.color)
+    ctx.exit()
 
 
 HELP_ALL = Option(
@@ -848,26 +800,27 @@ class GroupedCommand(click.Command):
     ``heading`` is the heading of ``roadgpt --help`` under which a command of another package stands;
     ``has_simulators`` adds the options of simulators. If it analyses tests, ``choice`` is the help of the
     option with its name that chooses tests, and ``at_end`` are the options of commands that run many tests,
-    with which they analyse them. ``makes`` returns further parameters; it is called when
-    they are first used, since options of models load the models."""
+    with which they analyse them."""
 
     def __init__(
         self, *args: Any, heading: str = "", has_simulators: bool = False, choice: str = "",
-        at_end: Sequence[Option] = (), makes: Callable[[], Sequence[click.Parameter]] = tuple, **rest: Any,
+        at_end: Sequence[Option] = (), **rest: Any,
     ) -> None:  # fmt: skip
         super().__init__(*args, **rest)
-        self.heading, self.has_simulators, self._makes = heading, has_simulators, makes
+        self.heading, self.has_simulators = heading, has_simulators
         self.choice, self.at_end = choice, at_end
         self.params.append(HELP_ALL)
 
     def get_params(self, ctx: click.Context) -> list[click.Parameter]:
-        """Returns the parameters; those of simulators come last."""
-        self.params[-1:-1], self._makes = self._makes(), tuple
+        """Returns the parameters; those of simulators come last, unless a short help leaves them out."""
         found = super().get_params(ctx)
-        return [*found, *simulator_options()] if self.has_simulators else found
+        is_short = len(found) > WHOLE and not ctx.meta.get(ALL, True)
+        return [*found, *simulator_options()] if self.has_simulators and not is_short else found
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Parses the arguments; says what to do with a description that begins with a dash."""
+        if {*ctx.help_option_names} & {*takewhile("--".__ne__, args)} and not ctx.resilient_parsing:
+            _show_help(ctx, False)
         ctx.meta.setdefault(LAYERS, cache(layers))
         if not any(parameter.name == "words" for parameter in self.get_params(ctx)):
             return super().parse_args(ctx, args)
@@ -879,7 +832,7 @@ class GroupedCommand(click.Command):
         listed = [each for each in self.get_params(ctx) if isinstance(each, click.Option) and not each.hidden]
         rare = {each for each in listed if isinstance(each, Option) and each.is_rare}
         is_all = bool(ctx.meta.get(ALL))
-        left_out = {HELP_ALL} if not rare or len(listed) <= WHOLE else rare
+        left_out = {HELP_ALL} if len(listed) <= WHOLE or not (rare or self.has_simulators) else rare
         shown: dict[Heading, list[tuple[str, str]]] = {heading: [] for heading in Heading}
         for option in listed:
             record = option.get_help_record(ctx)

@@ -2,9 +2,7 @@
 oracles by name: when a drive fails because the car is out of its lane.
 
 Files keep the values of the first three in one flat table, in the order of ``FIELDS``, and then the scene as
-plans have it. Options of commands and keys of settings files are made from the fields that have a
-``description``, also from those of ``Parts``. So that help texts load nothing heavy, geometry is imported
-when it is needed."""
+plans have it. What people can set, also the fields of ``Parts``, are rows of ``roadgpt/options.toml``."""
 
 import math
 import re
@@ -31,9 +29,10 @@ from roadgpt.brief.model import CentreLine
 from roadgpt.brief.plan import read_scene, scene_plan
 from roadgpt.brief.scene import LAND_KINDS, Scene, with_named
 from roadgpt.brief.visibility import weather_drawn
-from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, USUAL_MAP
+from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP
 from roadgpt.errors import BriefError, UsageError
 from roadgpt.ground.given import BESIDE, NAME, GivenGround
+from roadgpt.settings import ROWS, field, span
 
 if TYPE_CHECKING:
     from roadgpt.brief.model import Brief
@@ -50,9 +49,11 @@ ORACLES: dict[str, dict[str, Any]] = {
 """The fields of Limits that each oracle sets; ``departure`` is that of UN Regulation No. 157."""
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-FRICTIONS = (0.0, 2.0)  # the first is not reached
-SPEEDS = (5 / 3.6, 300 / 3.6)  # m/s, of speed limits in options and files
-LANE_WIDTHS = (2.0, 10.0)  # m, of the driven lane in options and files
+KMH = 3.6
+OF_RUN, OF_WORLD = ROWS["run"], ROWS["world"]
+FRICTIONS = span(OF_WORLD["friction"])  # the first is not reached
+SPEEDS = tuple(speed / KMH for speed in span(OF_WORLD["speed_limit"]))  # m/s, in options and files
+LANE_WIDTHS = span(OF_WORLD["lane_width"])  # m, of the driven lane in options and files
 Criterion = Literal["r157", "reg157", "rss", "fsm", "any"]
 """Who has to avoid a collision, or it is unavoidable: one of the drivers of ``verdict.careful``, or any."""
 STEEPEST = 0.12  # ratio, largest superelevation of bends
@@ -145,40 +146,20 @@ def ground_in(given: Any, check: Callable[[Any], str]) -> str:
 Lanes = Annotated[str, AfterValidator(lanes_in)]
 Geometry = Literal["arcs", "spline"]
 WHOLE = ConfigDict(frozen=True, extra="forbid")
-KMH = 3.6
-RARE: dict[str, Any] = {"rare": True}
-DRIVE: dict[str, Any] = {"heading": "Drive and verdict"}
-LANE: dict[str, Any] = {"within": LANE_WIDTHS}
 
 
 class Parts(Frozen):
     """The plug-ins that make and drive roads, by name, and how they work."""
 
-    reader: str = Field("model", description="Reads the words: model, chat, or plan.")
-    designer: str = Field("planner", description="planner, or thesis (a language model).")
-    rules: Literal["strict", "sbft"] = Field(
-        "strict", json_schema_extra=RARE,
-        description="Which rules a road must satisfy: RoadGPT's own (strict), or those of the SBFT tool "
-        "competition.",
-    )  # fmt: skip
-    driver: str = Field("lane_centring", description="A name, or FILE.py:CLASS.", json_schema_extra=DRIVE)
-    simulator: str = Field("mujoco", description="What simulates the car.", json_schema_extra=DRIVE)
-    geometry: Geometry = Field(
-        "arcs", json_schema_extra=RARE,
-        description="How a design becomes a road: arcs (lines, arcs, clothoids), or spline (as in RoadGPT's "
-        "thesis).",
-    )  # fmt: skip
-    keep_driving: bool = Field(
-        False, description="Continue to the end after the car leaves its lane.", json_schema_extra=DRIVE
-    )
-    scenario: str = Field(
-        "", description="One of roadgpt scenarios: 'r157:cut_in slower=30'.",
-        json_schema_extra=DRIVE,
-    )  # fmt: skip
-    tracks: str = Field(
-        "", description="Recorded tracks of others on the road, FILE.csv or FILE.xosc.",
-        json_schema_extra=DRIVE | RARE,
-    )  # fmt: skip
+    reader: str = field(OF_RUN["reader"])
+    designer: str = field(OF_RUN["designer"])
+    rules: Literal["strict", "sbft"] = field(OF_RUN["rules"])
+    driver: str = field(OF_RUN["driver"])
+    simulator: str = field(OF_RUN["simulator"])
+    geometry: Geometry = field(OF_RUN["geometry"])
+    keep_driving: bool = field(OF_RUN["keep_driving"])
+    scenario: str = field(OF_RUN["scenario"])
+    tracks: str = field(OF_RUN["tracks"])
 
 
 class Site(BaseModel):
@@ -186,23 +167,15 @@ class Site(BaseModel):
 
     model_config = WHOLE
 
-    map_size: float = Field(
-        USUAL_MAP, ge=SMALLEST_MAP, le=LARGEST_MAP,
-        description="Side of the map, m. [default: 250, more if needed]",
-    )  # fmt: skip
+    map_size: float = field(OF_WORLD["map_size"])
     """Side length of the square map in metres. One corner of the map is at (0, 0)."""
-    friction: float = Field(
-        1.0, gt=FRICTIONS[0], le=FRICTIONS[1],
-        description="Friction coefficient: dry 1, wet 0.6, snow 0.35.", json_schema_extra={"open": True},
-    )  # fmt: skip
+    friction: float = field(OF_WORLD["friction"])
     """Friction coefficient: 1.0 for dry asphalt, about 0.6 wet, 0.35 on snow, 0.1 on ice. If no value is
     given here, a description that names a surface, such as "wet", sets the friction: see
     ``World.on_surface_of``."""
     z_floor: float = -28.0
     """Height in metres of the flat ground of the simulator's map."""
-    ground: Annotated[str, WrapValidator(ground_in)] = Field(
-        "", description="Land: flat, hilly:3 (seed), or a file of heights.",
-    )  # fmt: skip
+    ground: Annotated[str, WrapValidator(ground_in)] = field(OF_WORLD["ground"])
 
     @model_validator(mode="before")
     @classmethod
@@ -229,28 +202,20 @@ class CrossSection(BaseModel):
 
     model_config = WHOLE
 
-    lanes: Lanes = Field("1+1", description="Own + oncoming lanes. [default: 1+1, or as described]")
+    lanes: Lanes = field(OF_WORLD["lanes"])
     """Number of lanes along the road, and number of oncoming lanes, such as "2+1". The tested car keeps to
     the rightmost lane."""
-    lane_width: Positive = Field(4.0, description="Width of every lane, m.", json_schema_extra=LANE)
-    lane_width_end: float | None = Field(
-        None, gt=0, allow_inf_nan=False, json_schema_extra=RARE | LANE,
-        description="Lane width at the road's end, m, reached gradually. [default: the same]",
-    )  # fmt: skip
+    lane_width: Positive = field(OF_WORLD["lane_width"])
+    lane_width_end: float | None = field(OF_WORLD["lane_width_end"], allow_inf_nan=False)
     """Width of every lane in metres at the end of the road, reached smoothly from ``lane_width`` at the
     start; None for a constant width."""
     centre_line: CentreLine | None = None
     """The line between the directions; None for a broken line on a road with one lane in each direction, and
     for a solid one on any other road."""
-    bank: Annotated[str | float, AfterValidator(bank_in)] = Field(
-        "none", description="Bank of bends: none, auto, or in %.", json_schema_extra={"unit": 100.0}
-    )
+    bank: Annotated[str | float, AfterValidator(bank_in)] = field(OF_WORLD["bank"])
     """Superelevation of bends: "none", "auto" for the values of the design guide CD 109, or one ratio for all
     bends."""
-    shoulder: NotNegative = Field(
-        3.0, json_schema_extra=RARE | {"within": (0.0, 100.0)},
-        description="Width of the firm ground along each side of the road, m; 0: none.",
-    )  # fmt: skip
+    shoulder: NotNegative = field(OF_WORLD["shoulder"])
     """Width in metres of the firm shoulder beside the carriageway. With 0 the road floats above the ground,
     as in the RoadGPT thesis."""
 
@@ -288,30 +253,16 @@ class Limits(BaseModel):
 
     model_config = WHOLE
 
-    speed_limit: Positive = Field(
-        70 / KMH, description="Speed limit, km/h.",
-        json_schema_extra=DRIVE | {"unit": KMH, "key": "speed_limit_kmh", "within": SPEEDS},
-    )  # fmt: skip
+    speed_limit: Positive = field(OF_WORLD["speed_limit"])
     """Speed limit in m/s. The default is the competition's 70 km/h."""
     limit_stated: bool = True
     """Whether exported lanes without a limit of their own have this one; False where a file has none."""
-    oob_tolerance: float = Field(
-        oracle_limits()["oob_tolerance"], gt=0, le=1,
-        description="Share of the car that may be outside its lane. [default: that of --oracle]",
-        json_schema_extra=DRIVE | RARE,
-    )  # fmt: skip
+    oob_tolerance: float = field(OF_WORLD["oob_tolerance"])
     """Fraction of the car's area, 0 to 1, that may be outside its lane before the test fails."""
-    lane_departure: bool = Field(
-        False, description="Also fail if a front tyre crosses the lane marking.",
-        json_schema_extra=DRIVE | RARE,
-    )  # fmt: skip
+    lane_departure: bool = field(OF_WORLD["lane_departure"])
     """Whether the test also fails as soon as a front tyre crosses the outer edge of a lane marking. Source:
     UN Regulation No. 157, 5.2.1."""
-    avoidable: Criterion | None = Field(
-        None, json_schema_extra=DRIVE | RARE,
-        description="Who has to avoid a collision, or it is UNAVOIDABLE: r157 (careful driver), reg157, rss, "
-        "fsm, or any of them. [default: as the scenario says, or by kind]",
-    )  # fmt: skip
+    avoidable: Criterion | None = field(OF_WORLD["avoidable"])
     """None: the careful driver of UN R157 where somebody cuts in, cuts out or brakes hard ahead, as that
     regulation defines it, and else any (``verdict.avoidable``)."""
     min_radius: Positive = 14.326
@@ -374,10 +325,7 @@ class World(BaseModel):
     section: CrossSection = CrossSection()
     """The cross-section of roads whose own ``profile`` is None."""
     limits: Limits = Limits()
-    scene: Annotated[Scene, BeforeValidator(_scene_in)] = Field(
-        Scene(), description="Others on the road, and weather: medium, 'light; wet'.",
-        json_schema_extra=DRIVE | {"open": True},
-    )  # fmt: skip
+    scene: Annotated[Scene, BeforeValidator(_scene_in)] = field(OF_WORLD["scene"], default=Scene())
     """A text is read as in ``brief.plan.read_scene``."""
 
     @model_validator(mode="before")

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from roadgpt.brief.words import LARGEST_MAP
 from roadgpt.cli import options, roads
 from roadgpt.cli.options import PATH, Argument, GroupedCommand, Heading, Option, named, whole
 from roadgpt.cli.streams import warn
@@ -211,6 +210,7 @@ def _way(
     road: Path | None,
 ) -> dict[str, Any]:  # fmt: skip
     """Finds a way over land, writes it as a road file, and returns what is told about it."""
+    from roadgpt.brief.words import LARGEST_MAP
     from roadgpt.ground.ground import Ground, slope_for
     from roadgpt.ground.wayfinding import way_between
     from roadgpt.network import network_of

@@ -11,12 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from roadgpt.brief import SURE, Brief, normal, remarks, sentence
-from roadgpt.brief.plan import plan, read_plan, with_route
-from roadgpt.brief.scene import scene_text
-from roadgpt.brief.sentence import clause_columns, road_words
-from roadgpt.chat import Meter
-from roadgpt.chat.answer import plain
 from roadgpt.cli import options
 from roadgpt.cli.options import HOW_MANY, Argument, GroupedCommand, Heading, Option, folder, named, whole
 from roadgpt.cli.roads import UNREADABLE, each_road, made, refuse_file, roads_in
@@ -25,6 +19,7 @@ from roadgpt.cli.streams import aligned, crashes_go_to, warn
 from roadgpt.errors import GivenUpError, UsageError
 
 if TYPE_CHECKING:
+    from roadgpt.brief import Brief
     from roadgpt.campaign import Campaign
     from roadgpt.campaign.gate import Gate
     from roadgpt.campaign.selection import Selection
@@ -97,7 +92,9 @@ def carry_out(
 
     The keyword arguments are the values of the options. If ``seed`` is None, the runs in ``out``
     determine the seed; without such runs, the seed is random. An empty ``route`` means a random route."""
+    from roadgpt.brief.plan import with_route
     from roadgpt.campaign import campaign
+    from roadgpt.chat import Meter
     from roadgpt.run import Setup, brief_of, seed_in
 
     gate = screen.gate = options.gate_of(given, out)
@@ -143,8 +140,11 @@ def tell_recording(screen: Screen, setup: "Setup") -> None:
 UNSURE = "perhaps not understood as meant ({:.0f} % sure), so check it or say it in other words"
 
 
-def understood(brief: Brief, world: "World", given: "World") -> str:
+def understood(brief: "Brief", world: "World", given: "World") -> str:
     """Returns lines: how a description was read, a warning if that is uncertain, and ``all_remarks``."""
+    from roadgpt.brief import SURE
+    from roadgpt.brief.plan import read_plan
+
     told = f"I read this as: {reading(brief)}"
     if brief.confidence < SURE:
         told += f"; {UNSURE.format(100 * brief.confidence)}"
@@ -154,8 +154,9 @@ def understood(brief: Brief, world: "World", given: "World") -> str:
     return "\n".join([told, *(f"note: {remark}" for remark in all_remarks(brief, world, given))])
 
 
-def all_remarks(brief: Brief, world: "World", given: "World") -> tuple[str, ...]:
+def all_remarks(brief: "Brief", world: "World", given: "World") -> tuple[str, ...]:
     """Returns sentences on what is not built, or not as described; ``given`` is the World of the user."""
+    from roadgpt.brief import remarks
     from roadgpt.design.room import world_remarks
 
     is_set = {name for part in (given.site, given.section, given.limits) for name in part.model_fields_set}
@@ -166,8 +167,10 @@ def all_remarks(brief: Brief, world: "World", given: "World") -> tuple[str, ...]
     return tuple(dict.fromkeys((*of_words, *world_remarks(brief, given, world))))  # both tell the surface
 
 
-def reading(brief: Brief) -> str:
+def reading(brief: "Brief") -> str:
     """Returns a text that says how a description was read, and which words the reading does not use."""
+    from roadgpt.brief import sentence
+
     said = sentence(brief).removesuffix(".")
     told = f"{said[:1].lower()}{said[1:]}"
     if brief.unused:
@@ -263,7 +266,10 @@ def read(
             click.echo(_table(briefs[0]))
 
 
-def _as_data(brief: Brief, world: "World", usual: "World") -> dict[str, object]:
+def _as_data(brief: "Brief", world: "World", usual: "World") -> dict[str, object]:
+    from roadgpt.brief import SURE, sentence
+    from roadgpt.brief.plan import plan
+
     told = {"sentence": sentence(brief), "plan": plan(brief), "confidence": brief.confidence}
     told |= {"is_sure": brief.confidence >= SURE, "other": brief.other}
     map_size, friction = world.site.map_size, world.site.friction
@@ -271,7 +277,9 @@ def _as_data(brief: Brief, world: "World", usual: "World") -> dict[str, object]:
     return {**told, "unused": brief.unused, "brief": brief.model_dump(exclude_defaults=True)}
 
 
-def _list(briefs: Sequence[Brief], as_table: bool) -> Iterator[str]:
+def _list(briefs: Sequence["Brief"], as_table: bool) -> Iterator[str]:
+    from roadgpt.brief import SURE
+
     likely = [brief for place, brief in enumerate(briefs) if not place or brief.confidence >= LEAST]
     whole = max(1.0, sum(brief.confidence for brief in likely))  # each is judged on its own; one is meant
     for number, brief in enumerate(likely, 1):
@@ -284,8 +292,12 @@ def _list(briefs: Sequence[Brief], as_table: bool) -> Iterator[str]:
         yield "not sure of any: if none is what you mean, say it in other words"
 
 
-def _table(brief: Brief) -> str:
+def _table(brief: "Brief") -> str:
     """Returns a table of the features in driving order, then the requirements on the whole road."""
+    from roadgpt.brief import normal
+    from roadgpt.brief.scene import scene_text
+    from roadgpt.brief.sentence import clause_columns, road_words
+
     said = normal(brief)
     rows = [("", "what", "how")]
     rows += [(str(number), *clause_columns(clause)) for number, clause in enumerate(said.clauses, 1)]
@@ -403,6 +415,7 @@ def drive_again(
     those that the user gave with ``--driver``. No pictures are drawn without ``formats``."""
     from roadgpt.campaign.folder_record import is_same, run_again, setups_of
     from roadgpt.campaign.model import NumberedTest
+    from roadgpt.chat.answer import plain
     from roadgpt.drive.loading import check_named_drivers
     from roadgpt.run import write_run
     from roadgpt.run.atomic import refuse_links
@@ -434,6 +447,7 @@ def _named(names: Sequence[str], choice: str | None) -> "list[Selection]":
     first."""
     from roadgpt.campaign.record import no_tests
     from roadgpt.campaign.selection import chosen, selection_of
+    from roadgpt.chat.answer import plain
 
     first = selection_of(names[0])
     if first is None:

@@ -150,8 +150,9 @@ def work_to_the_end(
 def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "tuple[Plan, Set[str]]":
     """Returns the plan in a file, and the fields of the World that it sets."""
     from roadgpt.campaign.plan import read_plan
-    from roadgpt.chat.config import Layer, configured
+    from roadgpt.chat import configured
     from roadgpt.drive.loading import check_named_drivers
+    from roadgpt.settings import Layer
 
     typed = options.typed(ctx)
     wrong = typed - BESIDE_A_FILE - {flag.field for flag in options.CHAT}

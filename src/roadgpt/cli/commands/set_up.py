@@ -22,6 +22,7 @@ from roadgpt.cli import options
 from roadgpt.cli.options import CommandGroup, Option
 from roadgpt.cli.streams import aligned, warn
 from roadgpt.errors import PartError, RoadGPTError
+from roadgpt.settings import unknown_variables
 
 PLUGIN = ("shelf", "name", "origin", "about", "works")
 
@@ -68,8 +69,6 @@ def show(with_origin: bool, as_json: bool, **values: Any) -> None:
 
     A folder may come from somebody else. For safety, .env and roadgpt.toml cannot name a driver's file, a
     program, a server that gets your API key, or a plug-in that asks a language model."""
-    from roadgpt.chat.config import unknown_variables
-
     shown = [*_of_options(), *_of_chat(values)]
     if as_json:
         told = {name: {"value": value, "origin": origin} for _, name, value, origin in shown}
