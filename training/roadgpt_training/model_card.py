@@ -101,14 +101,13 @@ def _scores(found: Sequence[Reading], others: Mapping[str, Sequence[Reading]]) -
     rows = [score(found).row("model")]
     rows += [score(its).row(name) for name, its in others.items()]
     languages = [its.row(f"model, {name}") for name, its in by(found, lambda pair: pair.lang).items()]
-    families = [its.row(f"model, {name}") for name, its in by(found, lambda pair: pair.family).items()]
     text = (
         "`python -m roadgpt_training evaluate --split test --card FILE`: percentages on the test split,"
         " hand-written descriptions, in families of phrasing that do not occur"
         " in training. A Brief is exact if its normal form is that of the label. The columns for turns,"
         " slope, order and side count only descriptions that ask for a road."
     )
-    return ["## How well it reads", "", text, "", HEAD, *rows, *languages, *families, ""]
+    return ["## How well it reads", "", text, "", HEAD, *rows, *languages, ""]
 
 
 def _confusions(found: Sequence[Reading]) -> list[str]:
