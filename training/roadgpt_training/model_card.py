@@ -15,11 +15,11 @@ Labels follow one guide (`training/data`). Training always went on from the last
 processor cores, three times on a GPU. `training.txt`, beside the weights, has every round with its pairs,
 rates, shares and choices.
 
-Weights, the threshold of refusals and the confidence are chosen by validation. In three earlier rounds
-mixtures of weights and a threshold were chosen with an eye on test and exam, too, so their figures flatter
-a little; the last rounds did not look at them, nor at sets of strangers. A test split whose misses had been
-shown became validation, because 22 of its 564 lines came back in training pairs; texts near lines of the
-test and the exam, once numbers are masked, were taken out of the training data when they were found."""
+Weights, the threshold of refusals and the confidence are chosen by validation. In some rounds mixtures of
+weights and a threshold were chosen with an eye on test and exam, too, so their figures flatter a little. A
+test split whose misses had been shown became validation, because 22 of its 564 lines came back in training
+pairs; texts near lines of the test and the exam, once numbers are masked, were taken out of the training
+data when they were found."""
 LIMITS = """\
 ## Limits
 
