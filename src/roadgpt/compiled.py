@@ -11,9 +11,14 @@ import os
 import warnings
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import IO, Any, TypeVar, cast
 
 from roadgpt.reading import digest
+
+try:
+    import fcntl
+except ImportError:  # Windows: each process compiles for itself
+    fcntl = None  # type: ignore[assignment]
 
 FUNCTIONS = ("mj_step1", "mj_step2", "mj_kinematics")
 LIBRARIES = ("libmujoco.so*", "libmujoco*.dylib", "mujoco.dll")  # by system; names contain the version
@@ -77,11 +82,58 @@ numba, call_at, WHY_NOT = _numba()
 COMPILES = numba is not None
 """Whether this process compiles its inner loops; if not, WHY_NOT says why."""
 
+BUSY, SAID = "roadgpt.compiling", "roadgpt.said"  # files beside the machine code, which processes lock
 COMPILING = "compiling the simulator for this machine, once after an installation: 10 to 30 s"
 
 
+@functools.cache
+def _file(name: str) -> IO[str] | None:
+    """Returns a file that this process keeps open, beside the machine code; None if it can lock none."""
+    try:
+        folder = Path(numba.core.caching.FunctionCache(_file.__wrapped__).cache_path)
+        folder.mkdir(parents=True, exist_ok=True)
+        return None if fcntl is None else (folder / name).open("a")
+    except (OSError, RuntimeError):
+        return None
+
+
+class _Turn:
+    """Lets one process at a time compile; the others wait, and load what it has kept."""
+
+    depth = 0  # functions that this process compiles, each for the one before it
+
+    def __enter__(self) -> None:
+        self.depth += 1
+        if self.depth == 1 and (file := _file(BUSY)):
+            fcntl.flock(file, fcntl.LOCK_EX)
+
+    def __exit__(self, *_: object) -> None:
+        self.depth -= 1
+        if self.depth == 0 and (file := _file(BUSY)):
+            fcntl.flock(file, fcntl.LOCK_UN)
+
+
+_turn = _Turn()
+
+
+def _in_turn(compile_: Callable[..., Any], signature: Any) -> Any:
+    with numba.core.compiler_lock.global_compiler_lock, _turn:
+        return compile_(signature)
+
+
+def _is_first() -> bool:
+    """Returns whether no other process that still runs has said that it compiles."""
+    try:
+        if file := _file(SAID):
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True
+
+
 def announce() -> None:
-    """Makes the first drive after an installation say why it takes long, before numba begins to compile."""
+    """Makes the first drive after an installation say why it takes long, before numba begins to compile; of
+    several processes at once, one says it."""
     if not COMPILES:
         return
     from numba.core.event import Event, Listener, register
@@ -92,7 +144,8 @@ def announce() -> None:
         def on_start(self, event: Event) -> None:
             if not self.is_made:
                 self.is_made = True
-                logging.getLogger("roadgpt").warning("roadgpt: %s", COMPILING)
+                if _is_first():
+                    logging.getLogger("roadgpt").warning("roadgpt: %s", COMPILING)
 
         def on_end(self, event: Event) -> None:
             pass
@@ -118,6 +171,7 @@ def compiled(function: Function) -> Function:
     function.__qualname__ += f"-{SOURCES}"
     try:
         made: Function = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+        cast(Any, made).compile = functools.partial(_in_turn, cast(Any, made).compile)
     except RuntimeError:  # there is no writable folder for the cache
         made = numba.njit(nogil=True, error_model="numpy")(function)
     return made

@@ -52,13 +52,15 @@ class Copy:
         self.script = folder / "caller.py"
         self.script.write_text(CALLER)
 
-    def answers(self, is_quiet: bool = False) -> tuple[list[str], str]:
-        """What a new process answers, and what it says on standard error."""
+    def started(self, is_quiet: bool = False) -> "subprocess.Popen[str]":
         env = {**os.environ, "PYTHONPATH": str(self.package.parent), "NUMBA_CACHE_DIR": str(self.kept)}
         start = START.format(level=40 if is_quiet else 0, script=str(self.script))
         command = [sys.executable, "-B", "-c", start]
-        done = subprocess.run(command, env=env, capture_output=True, text=True, check=True)
-        return done.stdout.split(), done.stderr
+        return subprocess.Popen(command, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def answers(self, is_quiet: bool = False) -> tuple[list[str], str]:
+        """What a new process answers, and what it says on standard error."""
+        return answer_of(self.started(is_quiet))
 
     def codes(self) -> list[Path]:
         return sorted(self.kept.rglob("*.nbc"))
@@ -67,6 +69,23 @@ class Copy:
         text = (self.package / file).read_text(encoding="utf-8")
         assert text.count(old) == 1
         (self.package / file).write_text(text.replace(old, new), encoding="utf-8")
+
+
+def answer_of(process: "subprocess.Popen[str]") -> tuple[list[str], str]:
+    out, said = process.communicate(timeout=120)
+    assert process.returncode == 0, said
+    return out.split(), said
+
+
+def test_of_processes_that_start_at_once_one_compiles_and_says_so(tmp_path: Path) -> None:
+    copy = Copy(tmp_path)
+    answers = [answer_of(process) for process in [copy.started() for _ in range(4)]]
+    assert len({tuple(out) for out, _ in answers}) == 1
+    assert sorted(said for _, said in answers) == ["", "", "", SAYS]
+    written = {path: path.stat().st_mtime_ns for path in copy.codes()}
+    assert {path.name.partition("-")[0] for path in written} >= {f"caller.{name}" for name in CALLED}
+    assert all(said == "" for _, said in [answer_of(copy.started())])
+    assert written == {path: path.stat().st_mtime_ns for path in copy.codes()}
 
 
 def test_it_is_said_once_while_code_is_compiled_and_kept_code_is_not_used_where_its_files_have_changed(
