@@ -14,7 +14,7 @@ from typing import Any
 from roadgpt.errors import PartError
 
 KINDS = (
-    "providers", "readers", "designers", "rules", "exporters", "simulators", "movers", "drivers",
+    "providers", "readers", "designers", "rules", "exporters", "simulators", "drivers",
     "generators", "columns", "executors",
 )  # fmt: skip
 

@@ -13,9 +13,9 @@ from roadgpt.network.lanes import lanes_of
 from roadgpt.run import Setup, perform
 from roadgpt.traffic import Size, Stage
 from roadgpt.traffic.actor import HEADING, SPEED, STEP, X, Y, corners
+from roadgpt.traffic.idm import DENSITY, IdmMover
 from roadgpt.traffic.lane_map import lane_map, touched
 from roadgpt.traffic.lights import GREEN, RED, Lights
-from roadgpt.traffic.movers.idm import DENSITY, IdmMover
 
 NOBODY = np.zeros((0, 7))
 STRAIGHT = "straight 400 | lanes=1 against=1"

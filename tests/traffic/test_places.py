@@ -13,10 +13,10 @@ from roadgpt.network import network_of
 from roadgpt.network.lanes import lanes_of
 from roadgpt.network.markings import strokes
 from roadgpt.run import Setup, perform
+from roadgpt.traffic import begin
 from roadgpt.traffic.actor import SIZES, corners
 from roadgpt.traffic.lights import GREEN, RED
 from roadgpt.traffic.places import offset_of, parked_rows
-from roadgpt.traffic.traffic import begin
 from roadgpt.traffic.way import Way
 from roadgpt.traffic.ways import way_of
 

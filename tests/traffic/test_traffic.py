@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from exported import ROADS, WORLD
-from roadgpt import plugins
-from roadgpt.traffic import SIZES, STEP, Actor, Stage, TestedCar, Tracks, Traffic, begin
+from roadgpt.traffic import SIZES, STEP, Actor, Mover, Stage, TestedCar, Tracks, Traffic, begin
+from roadgpt.traffic.idm import IdmMover
+from roadgpt.traffic.replay import Replay
+from roadgpt.traffic.script import Script
 
 TestedCar.__test__ = False
 CAR = TestedCar(0.0, 0.0, 0.0, 10.0, 2.5, -2.0, 4.7, 1.86)
@@ -78,14 +80,15 @@ def test_a_replay_gives_the_samples_and_nobody_is_there_without_a_reason() -> No
     assert begin(ROADS["arcs"], WORLD, 1) is None
 
 
-@pytest.mark.parametrize("name", plugins.names("movers"))
-def test_every_mover_keeps_its_protocol_and_gives_the_same_again(name: str) -> None:
+@pytest.mark.parametrize("kind", [Replay, Script, IdmMover])
+def test_every_mover_keeps_its_protocol_and_gives_the_same_again(kind: type[Mover]) -> None:
     world, states = WORLD, np.random.default_rng(0).uniform(-9, 9, (20, 3, 5))
     tracks = Tracks(tuple(Actor(f"car {n}", "car", SIZES["car"]) for n in range(3)), states)
     scene = getattr(world, "scene", None)
     if scene is not None:
         world = world.model_copy(update={"scene": scene.model_copy(update={"flow": "medium"})})
-    made = [plugins.find("movers", name)(Stage(ROADS["arcs"], world, 7, tracks)) for _ in range(2)]
+    with_what = tracks if kind is Replay else Stage(ROADS["arcs"], world, 7)
+    made = [kind(with_what) for _ in range(2)]
     nobody = np.empty((0, 7))
     for number in range(10):
         moved = [

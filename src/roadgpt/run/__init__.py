@@ -230,7 +230,7 @@ def _is_staged(run: Run) -> bool:
     """Returns whether the others of the scene can be, and act, on the road of a Run."""
     if run.road is None or not run.world.scene.has_others:
         return True
-    from roadgpt.traffic.traffic import begin  # roads without others do not need it
+    from roadgpt.traffic import begin  # roads without others do not need it
 
     try:
         begin(run.road, run.world, run.seed)

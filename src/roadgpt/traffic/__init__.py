@@ -1,13 +1,20 @@
 """Moves the others on the road: everybody besides the tested car. Main function: ``begin``.
-Plug-ins: ``movers/``; see ``Mover``."""
 
-from roadgpt.traffic.actor import SIZES, STEP, STILL, Actor, Size, TestedCar, Tracks
-from roadgpt.traffic.traffic import Mover, Stage, Traffic, begin
+Three movers share the work: ``replay`` has recorded tracks, ``script`` a scene's actors, ``idm`` its flow.
+They are no plug-ins: a scene says who is there, and a simulator of your own moves them as it likes."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from roadgpt.traffic.actor import SIZES, STEP, Actor, Size, TestedCar, Tracks
+from roadgpt.traffic.traffic import Mover, Stage, Traffic
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road, World
 
 __all__ = [
     "SIZES",
     "STEP",
-    "STILL",
     "Actor",
     "Mover",
     "Size",
@@ -17,3 +24,38 @@ __all__ = [
     "Traffic",
     "begin",
 ]
+
+
+def begin(
+    road: "Road", world: "World", seed: int, replay: Tracks | Path | str | None = None
+) -> Traffic | None:
+    """Returns the others who are on the road that the tested car drives; None if nobody else is.
+
+    Args:
+        world: its scene says who else is there.
+        seed: of the movers that draw numbers.
+        replay: recorded tracks, or the file that holds them (see ``recording``).
+
+    Raises:
+        UsageError: the file cannot be used, or an actor of the scene cannot be, or act, on this road."""
+    scene, movers, lights = world.scene, list[Mover](), None
+    if scene.has_flow or scene.actors:
+        from roadgpt.traffic.lights import lights_of
+
+        lights = lights_of(road, world, seed)
+    if replay is not None:
+        from roadgpt.traffic.recording import read_recording
+        from roadgpt.traffic.replay import Replay
+
+        tracks = replay if isinstance(replay, Tracks) else read_recording(Path(replay)).on(road, world)
+        movers.append(Replay(tracks))
+    stage = Stage(road, world, seed, lights)
+    if scene.actors or scene.parked:
+        from roadgpt.traffic.script import Script
+
+        movers.append(Script(stage))
+    if scene.has_flow:
+        from roadgpt.traffic.idm import IdmMover
+
+        movers.append(IdmMover(stage))
+    return Traffic(movers, lights) if movers else None

@@ -6,8 +6,9 @@ from itertools import count
 from typing import TYPE_CHECKING
 
 from roadgpt.road.road import GOAL, START
+from roadgpt.traffic import begin
 from roadgpt.traffic.actor import SIZES, STEP, Size, TestedCar
-from roadgpt.traffic.traffic import Traffic, begin
+from roadgpt.traffic.traffic import Traffic
 from roadgpt.traffic.way import Way
 
 if TYPE_CHECKING:

@@ -2,14 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from roadgpt import plugins
 from roadgpt.traffic.actor import STEP, TESTED, Actor, FloatArray, TestedCar, Tracks, rounded
-from roadgpt.traffic.recording import read_recording
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -24,14 +21,12 @@ class Stage(NamedTuple):
     road: "Road"
     world: "World"
     seed: int
-    tracks: Tracks | None = None
-    """Recorded tracks to replay."""
     lights: "Lights | None" = None
     """The traffic lights, which run for everybody; None where nobody looks at them."""
 
 
 class Mover(Protocol):
-    """A plug-in (``movers/``), made with a Stage, that moves some of the others. States are arrays
+    """Moves some of the others, made with a Stage. States are arrays
     ``(actors, 5)`` as in Tracks, in the order of ``actors``, and NaN while an actor is not there."""
 
     actors: list[Actor]
@@ -156,35 +151,3 @@ class Traffic:
             states[number, : len(sample)] = sample
         was_there = np.flatnonzero(~np.isnan(states[:, :, 0]).all(axis=0))
         return Tracks(tuple(self.actors[number] for number in was_there), states[:, was_there])
-
-
-def begin(
-    road: "Road", world: "World", seed: int, replay: Tracks | Path | str | None = None
-) -> Traffic | None:
-    """Returns the others who are on a road during a drive; None if nobody else is.
-
-    Args:
-        road: the road that the tested car drives.
-        world: the World, whose scene says who else is there.
-        seed: seed of the movers that draw numbers.
-        replay: recorded tracks, or the file that holds them (see ``recording``).
-
-    Raises:
-        PartError: no mover that the scene needs is installed.
-        UsageError: the file cannot be used, or an actor of the scene cannot be, or act, on this road."""
-    if isinstance(replay, str | Path):
-        replay = read_recording(Path(replay)).on(road, world)
-    scene = world.scene
-    is_needed = {
-        "replay": replay is not None,
-        "script": bool(scene.actors or scene.parked),
-        "idm": scene.has_flow,
-    }
-    lights = None
-    if scene.has_flow or scene.actors:
-        from roadgpt.traffic.lights import lights_of
-
-        lights = lights_of(road, world, seed)
-    stage = Stage(road, world, seed, replay, lights)
-    movers = [plugins.find("movers", name)(stage) for name, needed in is_needed.items() if needed]
-    return Traffic(movers, lights) if movers else None

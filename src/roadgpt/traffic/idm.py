@@ -26,7 +26,8 @@ from roadgpt.traffic.way import LEAST_GRIP, SLOWING
 
 if TYPE_CHECKING:
     from roadgpt.road import Road
-    from roadgpt.traffic import Stage, TestedCar
+    from roadgpt.traffic.actor import TestedCar
+    from roadgpt.traffic.traffic import Stage
 
 DENSITY: Mapping[str, float] = {name: per_km / 1000.0 for name, per_km in FLOWS.items()}
 """Vehicles for each metre of a lane by the name of the flow."""

@@ -2,18 +2,16 @@
 
 import numpy as np
 
-from roadgpt.traffic.actor import SPEED, STEP, STILL, Actor, FloatArray, TestedCar
-from roadgpt.traffic.traffic import Stage
+from roadgpt.traffic.actor import SPEED, STEP, STILL, Actor, FloatArray, TestedCar, Tracks
 
 
 class Replay:
     """Moves actors along recorded tracks, whatever anybody else does. Who stands at the end of the tracks
     stays there; all others are gone."""
 
-    def __init__(self, stage: Stage) -> None:
-        assert stage.tracks is not None
-        self.actors: list[Actor] = [*stage.tracks.actors]
-        self._states = stage.tracks.states
+    def __init__(self, tracks: Tracks) -> None:
+        self.actors: list[Actor] = [*tracks.actors]
+        self._states = tracks.states
 
     def start(self, car: TestedCar, bodies: FloatArray) -> FloatArray:
         """Returns the first sample of the tracks."""
