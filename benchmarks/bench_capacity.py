@@ -15,7 +15,7 @@ from roadgpt.run import Setup, perform
 from roadgpt.traffic import Stage
 from roadgpt.traffic import following as f
 from roadgpt.traffic.actor import STEP
-from roadgpt.traffic.movers.idm import IdmMover
+from roadgpt.traffic.idm import IdmMover
 
 QUEUE, PLACE, LENGTH, SPACING = 60, 600.0, 4.7, 6.7  # vehicles, m, m, m
 PLAN = "straight 950 | lanes=1 against=1 map_size=1000"

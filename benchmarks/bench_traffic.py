@@ -25,7 +25,7 @@ from roadgpt.run import Setup, perform
 from roadgpt.traffic import Stage
 from roadgpt.traffic.actor import corners
 from roadgpt.traffic.following import RED
-from roadgpt.traffic.movers.idm import IdmMover
+from roadgpt.traffic.idm import IdmMover
 
 ROADS = [
     "| len=400",
