@@ -7,10 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from roadgpt.brief.amount import at_least, between, exactly
-from roadgpt.brief.junctions import JunctionClause, Side, Way
+from roadgpt.brief.junctions import JunctionClause
 from roadgpt.brief.model import Brief, Clause
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.language.names import Control, IslandSize, JunctionKind, Take
+from roadgpt.language.names import Control, IslandSize, JunctionKind, Side, Take, Way
 from tables import rows
 
 AMOUNTS = st.one_of(

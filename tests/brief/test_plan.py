@@ -11,9 +11,8 @@ from roadgpt.brief.model import Brief, Clause, at_least, exactly
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import CLAUSE, plan, read_plan
 from roadgpt.brief.sentence import sentence
-from roadgpt.brief.words import Compass
 from roadgpt.errors import BriefError
-from roadgpt.language.names import Kind
+from roadgpt.language.names import Compass, Kind
 from strategies import amounts, briefs, maybe
 from tables import rows
 

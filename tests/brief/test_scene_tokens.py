@@ -12,9 +12,8 @@ from hypothesis import strategies as st
 from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.brief.readers.model.grammar import END, PlanAutomaton
+from roadgpt.brief.readers.model.grammar import END, PlanAutomaton, any_change, whole
 from roadgpt.brief.readers.model.neural_network import WINDOW, WordPieces
-from roadgpt.brief.readers.model.scene_grammar import any_change, whole
 from roadgpt.brief.readers.model.scenes import asked_in, joined, with_named, with_origin, without_scene
 from roadgpt.brief.readers.model.slots import NumberSlot, slotted
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, TOKENS, Compared, change_of

@@ -10,10 +10,9 @@ from hypothesis import strategies as st
 from edit_truth import requests, roads
 from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.change.request import Change, EditRequest, Place, Target, Way
-from roadgpt.brief.model import Side
 from roadgpt.check.measures import measure
 from roadgpt.errors import EditError
-from roadgpt.language.names import Sharpness
+from roadgpt.language.names import Sharpness, Side
 from roadgpt.road import World, build
 from roadgpt_edit.editing import edit
 from tables import rows

@@ -13,6 +13,7 @@ from math import radians
 from typing import NamedTuple
 
 from roadgpt.brief.words import KINDS
+from roadgpt.language.table import ROADS
 
 SLOWEST, FASTEST = 20.0, 130.0  # km/h
 EVERY = 10.0  # km/h, from one value of the table to the next
@@ -22,15 +23,8 @@ SIGHT = (20, 35, 50, 65, 85, 105, 130, 160, 185, 220, 250, 285)
 SUPERELEVATION = 0.06
 TRANSITION = 2.0  # s
 BETWEEN_SAME_SIDE = 6.0  # m of straight for each km/h, between two turns to the same side
-USUAL: Mapping[str, float] = {
-    "country": 80.0, "urban": 50.0, "residential": 30.0, "mountain": 30.0, "access": 20.0
-}  # fmt: skip
-"""The design speed in km/h of each kind of road that gives none.
-
-All are conventions. Chapter 6 of the guide has 60 to 100 km/h for rural collectors on level ground, by
-traffic; most member states of the EU allow 80 to 100 km/h on rural roads. Streets where people live are
-usually zones of 30 km/h, and 50 km/h is the usual limit in towns. Chapter 5 has 30 to 60 km/h for local roads
-in mountains, of which 30 km/h leaves room for hairpins, and 20 km/h is the lowest speed of the tables."""
+USUAL: Mapping[str, float] = {name: row["speed"] for name, row in ROADS["surroundings"].items()}
+"""The design speed in km/h of each kind of road that gives none."""
 FOR_ROUNDING = 1.002  # ratio of drawn vertical radii to the least ones: inclines are written to the tenth
 
 

@@ -9,10 +9,11 @@ from roadgpt.brief.junctions import (
     ACROSS,
     ARMS,
     BENDS,
-    LANE_KINDS,
+    FORMS,
     RAMPS,
     SIZES,
     SKEW,
+    TAKES,
     JunctionClause,
     MapClause,
     is_about,
@@ -23,45 +24,26 @@ from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import ROAD_LENGTH_SLACK
 from roadgpt.errors import BriefError
 from roadgpt.language.names import JunctionKind
+from roadgpt.language.table import PARTS, ROADS
 
-POSSIBLE: dict[JunctionKind, tuple[str, ...]] = {
-    "t_junction": ("left", "right", "straight"),
-    "y_junction": ("left", "right"),
-    "crossroads": ("left", "right", "straight"),
-    "merge": ("ramp", "main"),
-    "diverge": ("ramp", "main"),
-    "lane_drop": (),
-    "lane_gain": (),
-    "lane_change": ("left", "right"),
-}
-"""The values of ``take`` that are possible at a kind of junction. At kinds that are not listed, all values
-except "ramp" and "main" are possible; "back" is possible only at a roundabout."""
 MOST_BLOCKS = 8
 MOST_OF_KIND = 12
 MOST_ARMS_OF_MINI = 4  # with more, kerbs between them would have radii below 3 m
 CIRCULATORY = 10.0  # m, about: the outer diameter of a roundabout minus the diameter of its island
-STEPS = {"lane_drop": -1, "lane_gain": 1, "lane_change": 0}
-"""The number of lanes behind a lane drop, gain or change, minus the number of lanes before."""
 LEAST_BESIDE_RAMP = 28.0  # m; source: the rule ``ramp_too_short``
 LEAST_LANE = 17.0  # m, before the taper; with the wide part of a taper of 60 m, these are the required 28 m
 LEAST_NARROW = 8.0  # m, of the lane, where it has less than 0.9 of its width, if no taper is required
 WIDE_IN_TAPER = 0.196  # of the taper: the share in which the lane is still wider than 0.9 of its full width
 
 
-ANGLES: dict[JunctionKind, Range] = {
-    "t_junction": Range(55, 90),
-    "y_junction": Range(90, 120),
-    "crossroads": Range(40, 90),
-    "star": Range(40, 65),
-}
-"""The range of the smallest angle between two arms of a junction, in degrees."""
-TURNS: dict[JunctionKind, Range] = {
-    "t_junction": Range(55, 125),
-    "y_junction": Range(30, 90),
-    "crossroads": Range(40, 140),
-    "star": Range(30, 140),
-}
-"""The range of the angle by which a route can turn left or right at a junction, in degrees."""
+ANGLES, TURNS = (
+    dict[JunctionKind, Range](
+        (kind, Range(*row[name])) for kind, row in ROADS["junctions"].items() if name in row
+    )
+    for name in ("angles", "turns")
+)
+"""Ranges in degrees of the smallest angle between two arms of a junction, and of that by which a route can
+turn left or right there."""
 TURN_LENGTHS = Range(15, 300)
 """The lengths in metres in which a turn lane can have more than 0.9 of its width: at least two waiting cars
 (AASHTO, A Policy on Geometric Design of Highways and Streets, 2018, section 9.7)."""
@@ -95,7 +77,8 @@ def faults_of_junction(junction: JunctionClause) -> Iterator[str]:
         yield f"a {name} has {possible} arms, not {junction.arms}; change one of them"
     if take == "back" and junction.kind != "roundabout":
         yield f"one cannot turn back at a {name}, only at a roundabout; leave it out"
-    if (ways := POSSIBLE.get(junction.kind)) and take is not None and take not in (*ways, "back"):
+    ways, is_any = TAKES[junction.kind], "back" in TAKES[junction.kind]
+    if ways and not is_any and take is not None and take not in (*ways, "back"):
         yield f"at a {name} one can go {' or '.join(ways)}, not {take}; change one of them"
     if junction.exit is not None and not meets(junction.exit, Range(1, arms.hi)):
         yield (
@@ -116,7 +99,7 @@ def faults_of_junction(junction: JunctionClause) -> Iterator[str]:
 
 def _faults_of_turn_lanes(junction: JunctionClause) -> Iterator[str]:
     sides, kind = {*junction.turn_lanes}, junction.kind
-    ways = {*(junction.ways or POSSIBLE.get(kind, ()))} - {*junction.only_in}
+    ways = {*(junction.ways or TAKES[kind])} - {*junction.only_in}
     if kind not in ("t_junction", "crossroads"):
         yield f"turn lanes are built at T-junctions and crossroads, not at a {junction.name}; leave them out"
     elif not sides or len(sides) < len(junction.turn_lanes) or "straight" in sides:
@@ -133,11 +116,10 @@ def _faults_of_turn_lanes(junction: JunctionClause) -> Iterator[str]:
 
 
 def _has_only_its_fields(junction: JunctionClause) -> bool:
-    usual = JunctionClause(kind=junction.kind)
-    others = FIELDS_OF.get(junction.kind, NOT_OF_PLAIN)
-    is_ramp = junction.take not in ("ramp", "main") or junction.kind in RAMPS
-    is_free = junction.take is None or POSSIBLE.get(junction.kind) != ()
-    return is_ramp and is_free and all(getattr(junction, name) == getattr(usual, name) for name in others)
+    usual, its = JunctionClause(kind=junction.kind), ROADS["forms"][FORMS[junction.kind]]
+    others = (name for name in PARTS["junction"] if name not in ("take", *its))
+    is_way = junction.take in (None, "back") or junction.take in TAKES[junction.kind]
+    return is_way and all(getattr(junction, name) == getattr(usual, name) for name in others)
 
 
 def _is_as_wide(junction: JunctionClause, size: Range) -> bool:
@@ -150,7 +132,7 @@ def _is_as_wide(junction: JunctionClause, size: Range) -> bool:
 def _are_ways_possible(junction: JunctionClause) -> bool:
     take, ways, arms = junction.take, junction.ways, ARMS[junction.kind]
     least = 1 if junction.kind == "crossroads" else arms.lo - 1 - len(junction.only_in)
-    possible = POSSIBLE.get(junction.kind) or ways
+    possible = TAKES[junction.kind]
     return not ways or (
         len(ways) in Range(least, arms.hi - 1)
         and len({*ways}) == len(ways)
@@ -159,17 +141,6 @@ def _are_ways_possible(junction: JunctionClause) -> bool:
     )
 
 
-OF_RINGS = ("size", "radius", "outer", "exit", "lanes")
-OF_LANES = ("side", "length", "taper")
-NOT_OF_RAMPS = tuple(name for name in JunctionClause.model_fields if name not in ("kind", "take", *OF_LANES))
-NOT_OF_PLAIN = (*OF_RINGS, *OF_LANES)
-FIELDS_OF: dict[JunctionKind, tuple[str, ...]] = {
-    "roundabout": OF_LANES,
-    **dict.fromkeys(RAMPS, NOT_OF_RAMPS),
-    **dict.fromkeys(LANE_KINDS, (*NOT_OF_RAMPS, "taper")),
-    "lane_change": (*NOT_OF_RAMPS, *OF_LANES),
-}
-"""The fields of a JunctionClause that do not go with a kind; NOT_OF_PLAIN for kinds that are not listed."""
 LENGTHS = Range(10, 1500)  # m, of a lane for acceleration or deceleration, and of tapers
 
 
@@ -254,7 +225,7 @@ def _allows(junction: JunctionClause, turn: float, least: float) -> bool:
 def _faults_of_lanes(brief: Brief) -> Iterator[str]:
     for n, place in enumerate(brief.junctions):
         before, after = brief.stretches[n : n + 2]
-        step = 0 if place.take == "main" else STEPS.get(place.kind)
+        step = 0 if place.take == "main" else ROADS["junctions"][place.kind].get("step")
         own = span(before.lanes)
         wanted = before.lanes and step is not None and Range(own.lo + step, own.hi + step)
         if wanted and not meets(after.lanes, wanted):

@@ -4,7 +4,7 @@ Merges, motorway exits, lane drops, lane gains and lane changes are listed toget
 driving order."""
 
 from collections.abc import Mapping
-from typing import Literal, Self, get_args
+from typing import Self, get_args
 
 from pydantic import Field, field_validator, model_validator
 
@@ -17,15 +17,15 @@ from roadgpt.language.names import (
     LaneKind,
     MapJunctionKind,
     RampKind,
+    Side,
     Take,
+    Way,
 )
 from roadgpt.language.table import ROADS
 
 RAMPS: tuple[JunctionKind, ...] = get_args(RampKind)
 LANE_KINDS: tuple[JunctionKind, ...] = get_args(LaneKind)
 """The kinds that are not junctions: a lane ends, a lane begins, or the route changes to another lane."""
-Side = Literal["left", "right"]
-Way = Literal["left", "right", "straight"]
 NAMES: Mapping[JunctionKind, tuple[str, ...]] = {
     kind: tuple(row["names"]) for kind, row in ROADS["junctions"].items()
 }
@@ -34,7 +34,7 @@ MAP = "map"
 ROUTE = "route"
 LONGEST_ROUTE = 12  # junctions
 ONE = exactly(1)
-SIGNS: Mapping[Control, str] = ROADS["controls"]
+SIGNS: Mapping[Control, str] = {name: row["names"][0] for name, row in ROADS["controls"].items()}
 """The signs or lights at the junctions of a map, in words."""
 
 
@@ -160,6 +160,12 @@ class MapClause(Frozen):
         return junctions.control or self.control
 
 
+FORMS: Mapping[JunctionKind, str] = {kind: row["form"] for kind, row in ROADS["junctions"].items()}
+TAKES: Mapping[JunctionKind, tuple[Take, ...]] = {
+    kind: tuple(row.get("takes", [take for take in get_args(Take) if take not in ("ramp", "main")]))
+    for kind, row in ROADS["junctions"].items()
+}
+"""Where a route can go on at each kind; "back" is possible only at a roundabout."""
 ARMS: Mapping[JunctionKind, Range] = {kind: Range(*row["arms"]) for kind, row in ROADS["junctions"].items()}
 """The number of arms of each kind, including the road on which the route arrives."""
 SIZES: Mapping[IslandSize, Range] = {size: Range(*ends) for size, ends in ROADS["islands"].items()}

@@ -3,18 +3,18 @@
 Numbers in a Brief are in everyday units (degrees, metres and percent), so that people can write Briefs."""
 
 import re
-from typing import Annotated, Any, Literal, Self, cast
+from typing import Annotated, Any, Self, cast
 
 from pydantic import AfterValidator, Field, model_validator
 
 from roadgpt.brief.amount import Amount, Frozen, at_least, at_most, between, exactly, span
 from roadgpt.brief.beside import BESIDE, friction_of
 from roadgpt.brief.design_speed import FASTEST, SLOWEST, USUAL
-from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, MapClause, Side
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, MapClause
 from roadgpt.brief.ranges import Range, nearest
 from roadgpt.brief.scene import Scene
-from roadgpt.brief.words import LARGEST_MAP, MOST_LANES, SMALLEST_MAP, Compass, Surroundings
-from roadgpt.language.names import Bump, Kind, Sharpness, Size, Slope
+from roadgpt.brief.words import LARGEST_MAP, MOST_LANES, SMALLEST_MAP
+from roadgpt.language.names import Bump, CentreLine, Compass, Kind, Sharpness, Side, Size, Slope, Surroundings
 
 __all__ = [
     "OTHER_SIDE",
@@ -39,7 +39,6 @@ OTHER_SIDE: dict[Side, Side] = {"left": "right", "right": "left"}
 SIDE = re.compile("left(?!_hand)|right")
 OTHER_POLE = {"north": "south", "south": "north"}
 UPSIDE_DOWN = re.compile("north|south")
-CentreLine = Literal["solid", "broken", "double", "none"]
 OF_THE_WORDS = ("words", "beside", "unused", "confidence", "other", "map_size", "scene")
 """The fields of a Brief that require nothing of the shape of a road."""
 

@@ -14,13 +14,12 @@ from roadgpt.brief.model import (
     Amount,
     Brief,
     Clause,
-    Side,
     at_least,
     exactly,
     span,
 )
 from roadgpt.brief.words import KINDS
-from roadgpt.language.names import Kind, Slope
+from roadgpt.language.names import Kind, Side, Slope
 
 STRAIGHT: frozenset[Kind] = frozenset({"straight", "crest", "dip"})
 BUMPS: frozenset[Kind] = frozenset({"crest", "dip"})

@@ -12,7 +12,7 @@ from typing import Any, Literal, TypeVar
 from roadgpt.brief.amount import about
 from roadgpt.brief.design_speed import SpeedLimits, limits_at
 from roadgpt.brief.map_fit import has_low_grades, has_wide_turns
-from roadgpt.brief.model import Amount, Brief, Clause, Side, span
+from roadgpt.brief.model import Amount, Brief, Clause, span
 from roadgpt.brief.normal import (
     BUMPS,
     SHAPED,
@@ -40,7 +40,7 @@ from roadgpt.brief.words import (
     Quantity,
     heading_from,
 )
-from roadgpt.language.names import Bump, Kind, Slope
+from roadgpt.language.names import Bump, Kind, Side, Slope
 
 SMALLEST_TURN = 12.0  # degrees; a bend of less than 10 is not measured as a turn
 SMALLEST_OF_MOST = 0.6  # "turns of at most 20 degrees" have at least this share of the 20 degrees
@@ -197,7 +197,9 @@ def outline(brief: Brief, map_size: float = inf) -> Outline:
         _merged(group for clause in without_joints(brief.clauses) for group in _groups(clause, roomy))
     )
     grade, grade_range = _whole_grade(brief)
-    whole: dict[str, Any] = {name: _near(getattr(brief, name), row) for name, row in ROAD.items() if row.said}
+    whole: dict[str, Any] = {
+        name: _near(getattr(brief, name), row) for name, row in ROAD.items() if name != "radius"
+    }
     whole["hills"] = _count(brief.hills) if brief.hills else None
     if grade is None and grade_range:  # nearly flat: the limit holds at every place
         whole["steepest"] = overlap(

@@ -25,14 +25,18 @@ from roadgpt.brief.design_speed import FASTEST, SLOWEST, USUAL
 from roadgpt.brief.junctions import (
     LONGEST_ROUTE,
     MAP,
-    ROUTE,
     JunctionClause,
     JunctionCount,
     MapClause,
-    Side,
-    Way,
 )
-from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Frozen, exactly, span
+from roadgpt.brief.model import (
+    Amount,
+    Brief,
+    Clause,
+    Frozen,
+    exactly,
+    span,
+)
 from roadgpt.brief.normal import BUMPS
 from roadgpt.brief.refusal import refused
 from roadgpt.brief.scene import (
@@ -47,25 +51,30 @@ from roadgpt.brief.scene import (
     Scene,
     usual_weather,
 )
-from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, Compass, LandKind, Surroundings
+from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, LandKind
 from roadgpt.errors import BriefError
 from roadgpt.language.names import (
-    Bump,
     Control,
     Flow,
-    IslandSize,
     JunctionKind,
     Kind,
     Light,
     MapJunctionKind,
-    Sharpness,
-    Size,
-    Slope,
+    Side,
     Surface,
-    Take,
-    Where,
+    Surroundings,
+    Way,
 )
-from roadgpt.language.table import LANDFORMS, MANEUVERS, NUMBERS, PLACES, ROAD_USERS, ROADS, WEATHER
+from roadgpt.language.table import (
+    LANDFORMS,
+    MANEUVERS,
+    NUMBERS,
+    PARTS,
+    PLACES,
+    ROAD_USERS,
+    WEATHER,
+    Part,
+)
 
 KINDS = frozenset(get_args(Kind))
 JUNCTIONS: frozenset[str] = frozenset(get_args(JunctionKind))
@@ -74,10 +83,6 @@ WHOLE = "||"
 SCENE = "&&"
 BARE: dict[str, str] = dict.fromkeys(("straight", *BUMPS), "length")
 """The field that a number without a key sets, by kind of clause; for turns, the number is their angle."""
-ONE_WAY = "oneway"
-NO_LANE = exactly(0)
-KEYS: Mapping[str, Mapping[str, str]] = ROADS["keys"]
-"""The fields of numbers by their keys, of a clause, a road, a junction and a map."""
 OF_WHOLE = {
     "length": "len",
     "left_hand": "left_hand",
@@ -89,7 +94,6 @@ OF_WHOLE = {
 }
 """The fields of a Brief that can be asked of a whole route, with their names in plans; a map has none of the
 last three."""
-ENDS = ("starts", "ends")
 INNER = "(starts|ends|beside)"
 ALIKE = "alike"
 """A flag of a road. In older plans, and for a whole route or map, the word stands in ``beside(...)``."""
@@ -102,23 +106,38 @@ Model = TypeVar("Model", bound=Frozen)
 
 
 class _Language(NamedTuple):
-    """The words that describe one kind of thing in a plan, in the order in which they are written."""
+    """How plans write one kind of thing."""
 
+    parts: Mapping[str, Part]
+    """What it can have, in the order in which it is written."""
     words: Mapping[str, tuple[str, object]]
     """The field that a word sets, and its value."""
-    keys: Mapping[str, str]
-    """The field of the number behind a key such as "len="."""
-    others: Mapping[str, tuple[str, Callable[[str], object]]] = {}
-    """The field of what stands behind some other key, and the function that reads it."""
+    keys: Mapping[str, tuple[str, Callable[[str], object]]]
+    """The field of what stands behind a key such as "len=", and the function that reads it."""
     of: str = ""
     """The thing, for messages; empty for a road and its parts."""
     is_counted: bool = False
     """Whether "x3" says how many there are."""
 
 
-def _words(*kinds: Any, flags: Iterable[str] = (), **fields: Any) -> dict[str, tuple[str, object]]:
-    said = {word: (field, word) for field, kind in fields.items() for word in get_args(kind)}
-    return said | {flag: (flag, True) for flag in flags}
+def _language(
+    parts: Mapping[str, Part], of: str = "", is_counted: bool = False, **readers: Callable[[str], object]
+) -> _Language:
+    words = dict[str, tuple[str, object]]()
+    keys = dict[str, tuple[str, Callable[[str], object]]]()
+    for field, part in parts.items():
+        if part.words and not (part.list or part.unknown):
+            words |= {f"{part.key}={word}" if part.key else word: (field, word) for word in part.words}
+        elif part.key:
+            usual = _sides if part.list else partial(_one_of, part) if part.unknown else read_amount
+            keys[part.key] = field, readers.get(field, usual)
+        elif not part.brackets:
+            words[field] = field, True
+        if part.zero:
+            words[part.zero] = field, exactly(0)
+        if part.double:
+            keys[part.double] = field, lambda text: read_amount(text).times(0.5)
+    return _Language(parts, words, keys, of, is_counted)
 
 
 def _sides(text: str) -> tuple[str, ...]:
@@ -129,9 +148,9 @@ def _sides(text: str) -> tuple[str, ...]:
     return ways
 
 
-def _one_of(kind: Any, fault: str, text: str) -> str:
-    if text not in get_args(kind):
-        raise BriefError(f"{fault.format(text[:40])}; there are {', '.join(get_args(kind))}")
+def _one_of(part: Part, text: str) -> str:
+    if text not in part.words:
+        raise BriefError(f"{part.unknown.format(text[:40])}; there are {', '.join(part.words)}")
     return text
 
 
@@ -150,12 +169,6 @@ def _lane_number(text: str) -> int:
     return int(text)
 
 
-_centre = partial(_one_of, CentreLine, "a plan has no centre line '{}'")
-_compass = partial(_one_of, Compass, "one cannot come from '{}' in a plan")
-_size_of_map = partial(_one_number, "map has one size", SMALLEST_MAP, LARGEST_MAP, "m", "map_size=500")
-_speed = partial(_one_number, "road has one design speed", SLOWEST, FASTEST, "km/h", "speed=80")
-
-
 def read_ways(text: str) -> tuple[Way, ...]:
     """Returns the ways that a route takes at junctions, from a text such as "left, straight"; raises
     BriefError unless the text is 1 to 12 of left, right and straight."""
@@ -169,77 +182,41 @@ def read_ways(text: str) -> tuple[Way, ...]:
     return tuple(ways)
 
 
-CLAUSE = _Language(
-    _words(side=Side, sharpness=Sharpness, size=Size, slope=Slope, bump=Bump, flags=("alternating",)),
-    KEYS["clause"],
-    is_counted=True,
+def _of_scene(model: type[Frozen], fields: Iterable[str], **words: tuple[str, ...]) -> dict[str, Part]:
+    """Returns what a part of a scene can have: words by their fields, and the numbers of some fields."""
+    numbers = {
+        each: Part(NUMBERS[each].key) for each in fields if each in NUMBERS and each in model.model_fields
+    }
+    return {field: Part(words=those) for field, those in words.items()} | numbers
+
+
+CLAUSE = _language(PARTS["clause"], is_counted=True)
+ROAD = _language(
+    PARTS["road"],
+    map_size=partial(_one_number, "map has one size", SMALLEST_MAP, LARGEST_MAP, "m", "map_size=500"),
+    speed=partial(_one_number, "road has one design speed", SLOWEST, FASTEST, "km/h", "speed=80"),
 )
-ROAD = _Language(
-    {
-        **_words(
-            sharpness=Sharpness,
-            slope=Slope,
-            surroundings=Surroundings,
-            flags=("alternating", ALIKE, "hard", "motorway", "divided", "left_hand"),
-        ),
-        ONE_WAY: ("against", NO_LANE),
-    },
-    KEYS["road"],
-    {
-        "centre": ("centre", _centre),
-        "map_size": ("map_size", _size_of_map),
-        "from": ("comes_from", _compass),
-        "speed": ("speed", _speed),
-    },
-)
-JUNCTION = _Language(
-    {
-        **_words(
-            take=Take,
-            size=IslandSize,
-            control=Control,
-            flags=("skew", "all_way", "crosswalk", "others_stop"),
-        ),
-        **{f"side={side}": ("side", side) for side in get_args(Side)},
-    },
-    KEYS["junction"],
-    {
-        "ways": ("ways", _sides),
-        "in": ("only_in", _sides),
-        "out": ("only_out", _sides),
-        "turn_lane": ("turn_lanes", _sides),
-        "d": ("radius", lambda text: read_amount(text).times(0.5)),
-    },
-    "junction",
-)
-MAP_OF_ROADS = _Language(
-    _words(control=Control),
-    KEYS["map"],
-    {ROUTE: (ROUTE, read_ways)},
-    "map",
-)
+JUNCTION = _language(PARTS["junction"], "junction")
+MAP_OF_ROADS = _language(PARTS["map"], "map", route=read_ways)
 TESTED_CAR = "ego"
-AN_ACTOR = _Language(
-    {**_words(where=Where, side=Side), "opposite": ("side", "opposite")},
-    {number.key: field for field, number in NUMBERS.items() if field in Role.model_fields},
-    of="road user",
-    is_counted=True,
+SIDES = get_args(Side)
+AN_ACTOR = _language(
+    _of_scene(Role, NUMBERS, where=tuple(PLACES), side=(*SIDES, "opposite")), "road user", is_counted=True
 )
-AN_ACTION = _Language(
-    _words(side=Side),
-    {number.key: field for field, number in NUMBERS.items() if field in Action.model_fields},
-    of="manoeuvre",
-)
-ITSELF = _Language(
-    _words(turn=Way, person=Person), {"v": "speed"}, {"lane": ("lane", _lane_number)}, of=TESTED_CAR
-)
-A_LAND = _Language(
-    _words(lie=Lie, side=Side), {"len": "length", "away": "away"}, of="landscape", is_counted=True
+AN_ACTION = _language(_of_scene(Action, NUMBERS, side=SIDES), "manoeuvre")
+OF_ITSELF = _of_scene(Scene, NUMBERS, turn=get_args(Way), person=get_args(Person)) | {"lane": Part("lane")}
+ITSELF = _language(OF_ITSELF, TESTED_CAR, lane=_lane_number)
+A_LAND = _language(
+    _of_scene(Land, Land.model_fields, lie=get_args(Lie), side=SIDES), "landscape", is_counted=True
 )
 SLIPPERY = "slippery"
-A_PATCH = _Language({}, {NUMBERS[field].key: field for field in Patch.model_fields}, of="slippery place")
+A_PATCH = _language(_of_scene(Patch, Patch.model_fields), "slippery place")
 CLOCK = "clock"
-CONDITIONS = _words(flow=Flow, light=Light, surface=Surface, land=LandKind)
+CONDITIONS = {
+    word: (field, word)
+    for field, kind in {"flow": Flow, "light": Light, "surface": Surface, "land": LandKind}.items()
+    for word in get_args(kind)
+}
 MARK = re.compile(
     r"\b(?:(?:after|before|in) (?:turn|junction) (?:-1|[1-9]\d?)|(?:after|with) "
     rf"(?:{'|'.join(ROAD_USERS)}) [1-9]\d? (?:{'|'.join(MANEUVERS)}))(?!\S)"
@@ -249,7 +226,8 @@ MARK = re.compile(
 
 def plan(brief: Brief) -> str:
     """Returns the plan of a Brief, without ``words``, ``unused``, ``confidence`` and ``other``."""
-    mark, wishes = WHOLE, _wishes(brief)
+    is_usual = brief.surroundings is not None and brief.speed == USUAL[brief.surroundings]
+    mark, wishes = WHOLE, _written(brief.model_copy(update={"speed": None}) if is_usual else brief, ROAD)
     if brief.junctions:
         parts = [plan(brief.stretches[0])]
         for junction, stretch in zip(brief.junctions, brief.stretches[1:], strict=True):
@@ -264,26 +242,25 @@ def plan(brief: Brief) -> str:
 
 
 def _written(thing: Frozen, language: _Language) -> list[str]:
-    out = [word for word, (field, value) in language.words.items() if getattr(thing, field) == value]
-    for key, (field, read) in language.others.items():
-        if read is _sides and (ways := getattr(thing, field)):
-            out.append(f"{key}={'+'.join(ways)}")
-    amounts = {key: getattr(thing, field) for key, field in language.keys.items()}
-    return out + [f"{key}={amount_text(amount)}" for key, amount in amounts.items() if amount is not None]
+    given = ((field, part, getattr(thing, field)) for field, part in language.parts.items())
+    return [_text(field, part, value) for field, part, value in given if value or isinstance(value, float)]
 
 
-def _wishes(brief: Brief) -> list[str]:
-    wishes = _written(brief, ROAD)
-    if ONE_WAY in wishes:  # it stands in the place of the number
-        wishes.remove(ONE_WAY)
-        wishes[wishes.index("against=0")] = ONE_WAY
-    wishes += [f"{name}({_clause(clause)})" for name in ENDS if (clause := getattr(brief, name))]
-    wishes += [f"beside({', '.join(brief.beside)})"] if brief.beside else []
-    wishes += [f"centre={brief.centre}"] if brief.centre is not None else []
-    wishes += [f"map_size={brief.map_size:g}"] if brief.map_size is not None else []
-    wishes += [f"from={brief.comes_from}"] if brief.comes_from is not None else []
-    is_usual = brief.surroundings is not None and brief.speed == USUAL[brief.surroundings]
-    return wishes + ([] if brief.speed is None or is_usual else [f"speed={figure(brief.speed)}"])
+def _text(field: str, part: Part, value: Any) -> str:
+    if part.brackets:
+        return f"{field}({_clause(value) if isinstance(value, Clause) else ', '.join(value)})"
+    if part.zero and value == exactly(0):
+        return part.zero
+    match value:
+        case bool():
+            return field
+        case Amount():
+            said = amount_text(value)
+        case tuple():
+            said = "+".join(value)
+        case _:
+            said = value if isinstance(value, str) else figure(value)
+    return f"{part.key}={said}" if part.key else said
 
 
 def _clause(clause: Clause) -> str:
@@ -302,9 +279,7 @@ def junction_plan(junction: JunctionClause) -> str:
 def map_plan(asked: MapClause) -> str:
     """Returns a map as a plan, such as "map columns=3 rows=2"."""
     kinds = [_counted(each) for each in sorted(asked.junctions, key=lambda each: each.control is None)]
-    numbers = _written(asked.model_copy(update={"control": None}), MAP_OF_ROADS)
-    route = f"{ROUTE}={'+'.join(asked.route)}" if asked.route else ""
-    line = " ".join(filter(None, [MAP, "; ".join(kinds), *numbers, asked.control, route]))
+    line = " ".join(filter(None, [MAP, "; ".join(kinds), *_written(asked, MAP_OF_ROADS)]))
     return "; ".join([line, *map(_counted, asked.signed)])
 
 
@@ -475,15 +450,12 @@ def _read_words(fields: dict[str, object], words: Iterable[str], language: _Lang
         if word in language.words:
             _set(fields, *language.words[word])
         elif equals and key in language.keys:
-            _set(fields, language.keys[key], read_amount(value))
-        elif equals and key in language.others:
-            name, read = language.others[key]
+            name, read = language.keys[key]
             _set(fields, name, read(value))
         elif language.is_counted and word.startswith("x") and word[1:2] in "0123456789.":
             _set(fields, "count", read_amount(word[1:]))
         elif language.of:
-            keys = (f"{key}=" for key in (*language.keys, *language.others))
-            known = ", ".join(sorted((*language.words, *keys)))
+            known = ", ".join(sorted((*language.words, *(f"{key}=" for key in language.keys))))
             raise BriefError(f"a plan has no word '{word[:40]}' for a {language.of}; there are {known}")
         else:
             raise BriefError(
@@ -510,7 +482,7 @@ def _made(model: type[Model], fields: dict[str, object], text: str) -> Model:
 
 def scene_plan(scene: Scene) -> str:
     """Returns a scene as it stands in a plan, such as "truck ahead gap=30: brake; medium"; "" for none."""
-    itself = _written(scene, ITSELF) + ([f"lane={scene.lane}"] if scene.lane else [])
+    itself = _written(scene, ITSELF)
     line = [" ".join([TESTED_CAR, *itself])] if itself else []
     for role in scene.actors:
         actor = _marked([role.kind, *_times(role.count)], role, AN_ACTOR)

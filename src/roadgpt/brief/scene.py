@@ -9,9 +9,8 @@ from typing import Annotated, Any, Literal, Self, get_args
 from pydantic import AfterValidator, StringConstraints, model_validator
 
 from roadgpt.brief.amount import Amount, Frozen, exactly, span
-from roadgpt.brief.junctions import Side
 from roadgpt.brief.words import MOST_LANES, LandKind
-from roadgpt.language.names import ActorKind, Flow, Landform, Light, Surface, WeatherKind, What, Where
+from roadgpt.language.names import ActorKind, Flow, Landform, Light, Side, Surface, WeatherKind, What, Where
 from roadgpt.language.table import (
     CUES,
     FLOWS,

@@ -7,10 +7,10 @@ from typing import Any, get_args
 
 from roadgpt.brief.amount import meets
 from roadgpt.brief.junction_check import faults_of_junction
-from roadgpt.brief.junctions import ARMS, SIGNS, JunctionClause, Way
+from roadgpt.brief.junctions import ARMS, SIGNS, JunctionClause
 from roadgpt.brief.scene import Role
 from roadgpt.errors import BriefError
-from roadgpt.language.names import JunctionKind, Take
+from roadgpt.language.names import JunctionKind, Take, Way
 
 AROUND = ("back", "right", "straight", "left")
 """The arms of a crossroads, from that of the tested car on against the clock."""

@@ -4,11 +4,12 @@ junctions, ramps and crosswalks that it does not name, behind its last road."""
 from collections.abc import Iterator
 
 from roadgpt.brief.amount import span
-from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, Way
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
 from roadgpt.brief.model import OF_THE_WORDS, Brief, at_least, exactly
 from roadgpt.brief.outline import outline
 from roadgpt.brief.scene import Role, Scene
 from roadgpt.brief.scene_junctions import LEAVING, comes_to_junction, met
+from roadgpt.language.names import Way
 from roadgpt.language.table import FLOWS
 
 

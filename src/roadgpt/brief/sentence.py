@@ -1,6 +1,6 @@
 """Writes a Brief as one plain English sentence, which the model reader can read back."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from roadgpt.brief.junctions import (
     LANE_KINDS,
@@ -9,28 +9,23 @@ from roadgpt.brief.junctions import (
     JunctionClause,
     JunctionCount,
     MapClause,
-    Way,
 )
-from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, at_least, exactly
+from roadgpt.brief.model import (
+    Amount,
+    Brief,
+    Clause,
+    at_least,
+    exactly,
+)
 from roadgpt.brief.normal import BUMPS, STRAIGHT, normal
 from roadgpt.brief.scene import scene_text
-from roadgpt.brief.words import FEATURE, KINDS, OVER, ROAD, SLOPES
-from roadgpt.language.names import Control, Slope, Take
-from roadgpt.language.table import SURFACES
+from roadgpt.brief.words import FEATURE, KINDS, OVER, SLOPES
+from roadgpt.language.names import Slope, Way
+from roadgpt.language.table import ROADS, SURFACES
 
-CENTRES: dict[CentreLine, str] = {
-    "solid": "a solid centre line",
-    "broken": "a broken centre line",
-    "double": "a double centre line",
-    "none": "no centre line",
-}
-SURROUNDINGS = {
+KINDS_OF_ROADS: Mapping[str | None, str] = {
     None: "road",
-    "country": "country road",
-    "urban": "urban road",
-    "residential": "residential street",
-    "mountain": "mountain road",
-    "access": "access road",
+    **{name: row["names"][0] for name, row in ROADS["surroundings"].items()},
 }
 WAVY = ("serpentine", "zigzag", "winding", "slalom")
 """The kinds whose name stands for several turns; their ``count`` is the number of these turns."""
@@ -48,7 +43,7 @@ def _road_sentence(brief: Brief) -> str:
     if brief.map is not None:
         return _map_sentence(brief.map, brief)
     said = normal(brief)
-    noun = "motorway" if said.motorway else SURROUNDINGS[said.surroundings]
+    noun = "motorway" if said.motorway else KINDS_OF_ROADS[said.surroundings]
     road = _joined(_exact_metres(said.length), _slope(said), noun)
     if said.clauses:
         road += " with " + ", then ".join(clause_text(clause) for clause in said.clauses)
@@ -65,7 +60,7 @@ def _route_sentence(brief: Brief) -> str:
     way = ", then ".join(part for part in parts if part)
     length = f"{brief.length} metres in all" if brief.length else ""
     others = "other roads" if any(stretch.speed for stretch in brief.stretches) else "roads"
-    where = f"its {others} {SURROUNDINGS[brief.surroundings]}s" if brief.surroundings else f"its {others}"
+    where = f"its {others} {KINDS_OF_ROADS[brief.surroundings]}s" if brief.surroundings else f"its {others}"
     speed = f"{where} designed for {brief.speed:g} km/h" if brief.speed else ""
     apart = {"junctions": (), "stretches": (), "length": None, "speed": None}
     text = "; ".join(filter(None, [way, *_wishes(brief.model_copy(update=apart)), speed, length]))
@@ -106,36 +101,32 @@ def _stretch(brief: Brief) -> str:
 
 
 def _wishes(brief: Brief) -> list[str]:
-    whole = {name: getattr(brief, name) for name, row in ROAD.items() if row.said}
-    if _exact_metres(brief.length):
-        whole["length"] = None
     is_one_way = brief.against == exactly(0)
-    out = [
-        _turns(brief),
-        _in_all(brief.left, "left turn"),
-        _in_all(brief.right, "right turn"),
-        "all turns alternating" if brief.alternating else "",
-        _alike(brief),
-        f"every turn {brief.sharpness}" if brief.sharpness else "",
-        f"every turn of {brief.degrees} degrees" if brief.degrees else "",
-        f"every turn radius {brief.radius} metres" if brief.radius else "",
-        f"{_slope_at(brief.slope or 'up', brief.incline)} all the way" if brief.incline else "",
-        *(_said(name, amount) for name, amount in whole.items() if amount),
-        f"it starts with {clause_text(brief.starts)}" if brief.starts else "",
-        f"it ends with {clause_text(brief.ends)}" if brief.ends else "",
-        "hard for a lane keeper" if brief.hard else "",
-        f"{_counted(brief.lanes, 'lane')} along" if brief.lanes else "",
-        "one-way" if is_one_way else "",
-        f"{_counted(brief.against, 'oncoming lane')}" if brief.against and not is_one_way else "",
-        "a median" if brief.divided else "",
-        CENTRES[brief.centre] if brief.centre else "",
-        "traffic on the left" if brief.left_hand else "",
-        f"on a map of {brief.map_size:g} metres" if brief.map_size else "",
-        f"coming from the {brief.comes_from}" if brief.comes_from else "",
-        f"designed for {brief.speed:g} km/h" if brief.speed else "",
-        *(surface.said for name, surface in SURFACES.items() if name in brief.beside),
-    ]
-    return [wish for wish in out if wish]
+    against = f"{_counted(brief.against, 'oncoming lane')}" if brief.against else ""
+    apart = {
+        "turns": _turns(brief),
+        **{name: _in_all(getattr(brief, name), f"{name} turn") for name in ("left", "right")},
+        "alike": _alike(brief),
+        "incline": f"{_slope_at(brief.slope or 'up', brief.incline)} all the way" if brief.incline else "",
+        **{name: _said(name, amount) for name in ("climb", "hills") if (amount := getattr(brief, name))},
+        "lanes": f"{_counted(brief.lanes, 'lane')} along" if brief.lanes else "",
+        "against": "one-way" if is_one_way else against,
+        "centre": ROADS["centres"].get(brief.centre, ""),
+    }
+    if _exact_metres(brief.length):
+        apart["length"] = ""
+    surfaces = (surface.said for name, surface in SURFACES.items() if name in brief.beside)
+    return [*_asked("road", brief, apart), *surfaces]
+
+
+def _asked(what: str, thing: Brief | JunctionClause, apart: Mapping[str, str]) -> Iterator[str]:
+    """Yields in words what is asked of a road or a junction; ``apart`` has what depends on more than one of
+    its fields."""
+    for name, said in ROADS["said"][what].items():
+        value = getattr(thing, name)
+        plain = said.format(clause_text(value) if isinstance(value, Clause) else value) if value else ""
+        if text := apart.get(name, plain):
+            yield text
 
 
 def _turns(brief: Brief) -> str:
@@ -165,7 +156,7 @@ def _in_all(amount: Amount | None, noun: str) -> str:
 
 def _said(name: str, amount: Amount) -> str:
     """Returns a requirement for the whole road; a negative climb is a drop."""
-    said = ROAD[name].said
+    said: str = ROADS["said"]["road"][name]
     if name == "hills" and _is_one(amount):
         said = said.replace("changes", "change")
     falls = amount.hi is not None and amount.hi <= 0 and amount.lo != 0
@@ -291,62 +282,22 @@ def _article(text: str) -> str:
     return "an " if vowel else "a "
 
 
-TAKES: Mapping[Take, str] = {
-    "left": "turn left",
-    "right": "turn right",
-    "straight": "go straight on",
-    "back": "turn back the way it came",
-    "sharp_left": "take the sharpest left",
-    "sharp_right": "take the sharpest right",
-    "slight_left": "bear slightly left",
-    "slight_right": "bear slightly right",
-    "ramp": "use the ramp",
-    "main": "stay on the main road",
-}
-CONTROLS: Mapping[Control, str] = {
-    "priority": "where the route has priority",
-    "yield": "where the route has to give way",
-    "stop": "with a stop sign for the route",
-    "lights": "with traffic lights",
-    "none": "without signs",
-}
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
-TO: Mapping[Way, str] = {"left": "to the left", "right": "to the right", "straight": "straight on"}
-FROM: Mapping[Way, str] = {
-    "left": "from the left",
-    "right": "from the right",
-    "straight": "from straight ahead",
-}
 
 
 def junction_text(junction: JunctionClause) -> str:
     """Returns a junction and what the route does there, such as 'at a crossroads with traffic lights turn
     left'."""
-    parts = [
-        "at a",
-        junction.size,
-        "skew" if junction.skew else "",
-        junction.name,
-        f"with {junction.arms} arms" if junction.arms else "",
-        f"whose island has a radius of {junction.radius} metres" if junction.radius else "",
-        f"{junction.outer} metres across" if junction.outer else "",
-        f"with ways on {_listed(junction.ways, TO)}" if junction.ways else "",
-        _one_way(junction.only_in, "come", FROM),
-        _one_way(junction.only_out, "lead", TO),
-        f"whose closest roads are {junction.angle} degrees apart" if junction.angle else "",
-        f"with {junction.lanes} lanes around it" if junction.lanes else "",
-        f"on the {junction.side}" if junction.side else "",
-        f"{junction.length} metres long" if junction.length else "",
-        f"with a taper of {junction.taper} metres" if junction.taper else "",
-        CONTROLS[junction.control] if junction.control else "",
-        "at every arm" if junction.all_way else "",
-        "with stop signs for the others" if junction.others_stop else "",
-        "with a crosswalk" if junction.crosswalk else "",
-        " and ".join(f"with a {side}-turn lane" for side in junction.turn_lanes),
-        f"of {junction.turn_length} metres" if junction.turn_length else "",
-        _way_on(junction),
-    ]
-    return " ".join(filter(None, parts))
+    apart = {
+        "ways": f"with ways on {_listed(junction.ways, 'to')}" if junction.ways else "",
+        "only_in": _one_way(junction.only_in, "come", "from"),
+        "only_out": _one_way(junction.only_out, "lead", "to"),
+        "control": ROADS["controls"][junction.control]["met"] if junction.control else "",
+        "turn_lanes": " and ".join(f"with a {side}-turn lane" for side in junction.turn_lanes),
+        "take": _way_on(junction),
+    }
+    head = ("at a", junction.size, "skew" if junction.skew else "", junction.name)
+    return " ".join(filter(None, [*head, *_asked("junction", junction, apart)]))
 
 
 def _way_on(junction: JunctionClause) -> str:
@@ -356,7 +307,7 @@ def _way_on(junction: JunctionClause) -> str:
         way = "straight on" if junction.take == "straight" else (junction.take or "").replace("_", " ")
         return f"take {exit_text(junction.exit)}" + (f", which leads {way}" if way else "")
     otherwise = "go on somewhere" if junction.degrees is None else "turn"
-    way = TAKES[junction.take] if junction.take is not None else otherwise
+    way = ROADS["takes"][junction.take] if junction.take is not None else otherwise
     return way if junction.degrees is None else f"{way} by {junction.degrees} degrees"
 
 
@@ -367,10 +318,10 @@ def exit_text(number: Amount) -> str:
     return f"exit {number}"
 
 
-def _listed(ways: tuple[Way, ...], texts: Mapping[Way, str]) -> str:
-    return " and ".join(texts[way] for way in ways)
+def _listed(ways: tuple[Way, ...], how: str) -> str:
+    return " and ".join(ROADS["ways"][way][how] for way in ways)
 
 
-def _one_way(ways: tuple[Way, ...], verb: str, texts: Mapping[Way, str]) -> str:
+def _one_way(ways: tuple[Way, ...], verb: str, how: str) -> str:
     roads = f"a one-way road that {verb}s" if len(ways) == 1 else f"one-way roads that {verb}"
-    return f"with {roads} {_listed(ways, texts)}" if ways else ""
+    return f"with {roads} {_listed(ways, how)}" if ways else ""

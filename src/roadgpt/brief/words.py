@@ -17,15 +17,13 @@ from math import inf
 from typing import Any, Literal, NamedTuple, get_args
 
 from roadgpt.brief.ranges import Range
-from roadgpt.language.names import Bump, Kind, Sharpness, Size, Slope
+from roadgpt.language.names import Bump, Compass, Kind, Sharpness, Size, Slope
 from roadgpt.language.table import ROADS
 from roadgpt.settings import ROWS, span
 
 MOST_LANES = 4  # in one direction
 LandKind = Literal["flat", "rolling", "hilly", "mountain"]
 """How high the hills of a landscape are."""
-Surroundings = Literal["country", "urban", "residential", "mountain", "access"]
-Compass = Literal["west", "southwest", "south", "southeast", "east", "northeast", "north", "northwest"]
 
 
 def heading_from(compass: Compass) -> float:
@@ -121,8 +119,6 @@ class Quantity(NamedTuple):
     """The phrase for a requirement in prompts, complaints and advice."""
     measured: str
     """The phrase for a measured value in complaints; here ``{}`` stands for the value."""
-    said: str
-    """The phrase for a requirement in the sentence of a Brief; empty if no Brief requires this quantity."""
     slack: Callable[[float], float]
     """Returns the tolerance around an exact number, in the unit of the number."""
     tolerance: str
@@ -131,6 +127,8 @@ class Quantity(NamedTuple):
     """Whether the quantity depends only on the heights of the road."""
     unit: str = ""
     """The unit after a range, with a space before it."""
+    said: str = ""
+    """The phrase for a requirement of a feature in the sentence of a Brief."""
 
 
 Tolerance = tuple[Callable[[float], float], str]
@@ -148,28 +146,25 @@ _DEGREES = (degrees_slack, "10 %, at most 7 degrees, or at most 10 from 90 degre
 _COUNT: Tolerance = (lambda _: 0.0, "none")
 
 ROAD = {
-    "turning": Quantity(
-        "{} degrees of turning in all", "{:.0f}", "{} degrees of turning in all", *_share(TURNING_SLACK)
-    ),
-    "steepest": Quantity("a steepest place of {} %", "{:.1f} %", "steepest {} percent", *_PERCENT, True),
-    "climb": Quantity(
-        "a climb of {} m", "{:.1f} m", "a net climb of {} metres", *_share(LENGTH_SLACK, 1.0), True
-    ),
-    "hills": Quantity("{} changes between climbing and falling", "{}", "{} changes of slope", *_COUNT, True),
-    "length": Quantity("a length of {} m", "{:.0f} m", "{} metres long in all", *_share(ROAD_LENGTH_SLACK)),
-    "radius": Quantity("a tightest place of {} m radius", "{:.1f} m", "", *_METRES),
+    "turning": Quantity("{} degrees of turning in all", "{:.0f}", *_share(TURNING_SLACK)),
+    "steepest": Quantity("a steepest place of {} %", "{:.1f} %", *_PERCENT, True),
+    "climb": Quantity("a climb of {} m", "{:.1f} m", *_share(LENGTH_SLACK, 1.0), True),
+    "hills": Quantity("{} changes between climbing and falling", "{}", *_COUNT, True),
+    "length": Quantity("a length of {} m", "{:.0f} m", *_share(ROAD_LENGTH_SLACK)),
+    "radius": Quantity("a tightest place of {} m radius", "{:.1f} m", *_METRES),
 }
-"""The quantities of a whole road, by their names in the Brief, the Outline and the Measures."""
+"""The quantities of a whole road, by their names in the Outline, the Measures and (but the radius) the Brief.
+"""
 
 FEATURE = {
-    "degrees": Quantity("{} degrees", "turns {:.0f} degrees", "of {} degrees", *_DEGREES),
+    "degrees": Quantity("{} degrees", "turns {:.0f} degrees", *_DEGREES, said="of {} degrees"),
     "radius": Quantity(
-        "radius {} m", "has a radius of {:.1f} m", "with a radius of {} metres", *_METRES, unit=" m"
+        "radius {} m", "has a radius of {:.1f} m", *_METRES, unit=" m", said="with a radius of {} metres"
     ),
-    "length": Quantity("{} m long", "is {:.0f} m long", "of {} metres", *_METRES, unit=" m"),
-    "grade": Quantity("slope {} %", "has a grade of {:.1f} %", "{} percent", *_PERCENT, True, " %"),
+    "length": Quantity("{} m long", "is {:.0f} m long", *_METRES, unit=" m", said="of {} metres"),
+    "grade": Quantity("slope {} %", "has a grade of {:.1f} %", *_PERCENT, True, " %", said="{} percent"),
     "climb": Quantity(
-        "climb {} m", "rises by {:.1f} m", "by {} metres", *_share(PART_CLIMB_SLACK, 1.0), True, " m"
+        "climb {} m", "rises by {:.1f} m", *_share(PART_CLIMB_SLACK, 1.0), True, " m", said="by {} metres"
     ),
 }
 """The quantities of one turn or straight, by their names in a Feature and in a MeasuredFeature."""

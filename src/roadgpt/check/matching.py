@@ -38,7 +38,6 @@ from roadgpt.brief.junctions import (
 from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, JunctionClause, span
 from roadgpt.brief.outline import Feature, Group, Outline, both
 from roadgpt.brief.ranges import Range, overlap
-from roadgpt.brief.sentence import TAKES
 from roadgpt.brief.words import COUNTS, FEATURE, NO_TURN, OVER, ROAD, WHOLE_SLOPES
 from roadgpt.check.extremes import tightest, vertical_bends
 from roadgpt.check.measures import (
@@ -52,6 +51,7 @@ from roadgpt.check.measures import (
     Measures,
 )
 from roadgpt.language.names import Control
+from roadgpt.language.table import ROADS
 from roadgpt.plural import plural
 from roadgpt.road import Profile, Road
 
@@ -475,7 +475,7 @@ def junction_complaints(found: MeasuredJunction, asked: JunctionClause) -> Itera
     if found.exit not in span(asked.exit):
         yield f"asked for exit {asked.exit}, takes exit {found.exit}"
     if asked.take is not None and not takes(found, asked):
-        yield f"asked to {TAKES[asked.take]}, turns {found.turn:.0f} degrees"
+        yield f"asked to {ROADS['takes'][asked.take]}, turns {found.turn:.0f} degrees"
     control = asked.control
     if control in ("none", "priority") and "roundabout" in found.kinds:
         control = "yield"  # everybody gives way to those on the ring

@@ -31,13 +31,13 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from roadgpt.brief.junctions import RAMPS, Side, Way, side_of
+from roadgpt.brief.junctions import RAMPS, side_of
 from roadgpt.brief.outline import USUALLY_WIDEST
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, PieceCurve
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.pieces import along_all
-from roadgpt.language.names import Control, JunctionKind, LaneKind
+from roadgpt.language.names import Control, JunctionKind, LaneKind, Side, Way
 from roadgpt.network import Connection, Junction, Network, NetworkRoad, RoadEnd
 from roadgpt.network.network import kinds_of
 from roadgpt.road.design import LEAST_WIDTH

@@ -14,7 +14,7 @@ import numpy as np
 from roadgpt.brief.design_speed import BETWEEN_SAME_SIDE
 from roadgpt.brief.element import Element
 from roadgpt.brief.map_fit import longest_straight
-from roadgpt.brief.model import OTHER_SIDE, Side
+from roadgpt.brief.model import OTHER_SIDE
 from roadgpt.brief.outline import USUALLY_WIDEST, Feature, Outline, both
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import KINDS, LEAST_STRAIGHT, SHARPNESS, STEEPEST
@@ -24,6 +24,7 @@ from roadgpt.check.rules.too_abrupt import MOST
 from roadgpt.design.elements import MOST_TRANSITION, segments_of_turn, turn_element
 from roadgpt.design.vertical import COMFORT
 from roadgpt.errors import DesignError
+from roadgpt.language.names import Side
 from roadgpt.road import World
 
 HAIRPINS = ("hairpin", "switchback")  # names of turns with which a road climbs or descends a slope

@@ -27,7 +27,13 @@ from roadgpt import check
 from roadgpt.brief.amount import Amount, at_least, between, exactly, span
 from roadgpt.brief.design_speed import limits_at
 from roadgpt.brief.junction_check import check_junction, faults_beside_ramps
-from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, MapClause, Way, side_of
+from roadgpt.brief.junctions import (
+    LANE_KINDS,
+    RAMPS,
+    JunctionClause,
+    MapClause,
+    side_of,
+)
 from roadgpt.brief.map_fit import EDGE, LEADS
 from roadgpt.brief.model import Brief, Clause, mirrored
 from roadgpt.brief.normal import BUMPS
@@ -71,6 +77,7 @@ from roadgpt.design.road_search import DraftSearch
 from roadgpt.design.unbuilt import check_lanes_across
 from roadgpt.design.variety import Shapes
 from roadgpt.errors import BriefError, DesignError, RoadGPTError, UsageError
+from roadgpt.language.names import Way
 from roadgpt.network import build_route
 from roadgpt.network.building import BESIDE, length_at_ramp, length_beside, length_of_turn_lanes
 from roadgpt.network.growing import BEFORE_TURN_LANES, length_inside

@@ -11,7 +11,9 @@ TYPES = {
     "Surface": ("scenes", "surfaces"), "Landform": ("scenes", "landforms"), "Kind": ("roads", "features"),
     "Sharpness": ("roads", "sharpness"), "Size": ("roads", "sizes"), "Slope": ("roads", "slopes"),
     "Bump": ("roads", "bumps"), "JunctionKind": ("roads", "junctions"), "Control": ("roads", "controls"),
-    "IslandSize": ("roads", "islands"), "Take": ("roads", "takes"),
+    "IslandSize": ("roads", "islands"), "Take": ("roads", "takes"), "Side": ("roads", "sides"),
+    "Way": ("roads", "ways"), "Surroundings": ("roads", "surroundings"), "CentreLine": ("roads", "centres"),
+    "Compass": ("roads", "compass"),
 }  # fmt: skip
 """The types of names, and the file and the part whose rows have them."""
 OF_JUNCTIONS = {

@@ -63,6 +63,21 @@ Take = Literal[
     "left", "right", "straight", "back", "sharp_left", "sharp_right", "slight_left", "slight_right", "ramp",
     "main"
 ]
+Side = Literal[
+    "left", "right"
+]
+Way = Literal[
+    "left", "right", "straight"
+]
+Surroundings = Literal[
+    "country", "urban", "residential", "mountain", "access"
+]
+CentreLine = Literal[
+    "solid", "broken", "double", "none"
+]
+Compass = Literal[
+    "west", "southwest", "south", "southeast", "east", "northeast", "north", "northwest"
+]
 PlainKind = Literal[
     "t_junction", "y_junction", "crossroads", "star", "roundabout"
 ]

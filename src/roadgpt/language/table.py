@@ -161,6 +161,21 @@ class LandRow:
     said: str = ""
 
 
+class Part(NamedTuple):
+    """What a thing can have, as plans write it; ``roads.toml`` explains the fields."""
+
+    key: str = ""
+    words: tuple[str, ...] = ()
+    unit: str = ""
+    of: str = ""
+    zero: str = ""
+    double: str = ""
+    unknown: str = ""
+    list: bool = False
+    brackets: bool = False
+    token: bool = True
+
+
 class SurfaceRow(NamedTuple):
     """A surface that descriptions can name, such as ice."""
 
@@ -201,6 +216,21 @@ _WHO: Mapping[str, tuple[ActorKind, ...]] = {"all": tuple(ROAD_USERS), "moving":
 _SCENES = _table("scenes.toml")
 ROADS = _table("roads.toml")
 """What words for roads require: features, sharpness, sizes, slopes, junctions, signs."""
+
+
+def named_in(part: str) -> tuple[str, ...]:
+    """Returns the names of the rows of a part of ``ROADS``."""
+    return tuple(ROADS[part].get("rows", ROADS[part]))
+
+
+PARTS: Mapping[str, Mapping[str, Part]] = {
+    thing: {
+        name: Part(**{**row, "words": named_in(row["words"]) if "words" in row else ()})
+        for name, row in parts.items()
+    }
+    for thing, parts in ROADS["parts"].items()
+}
+"""What clauses, roads, junctions and maps can have, by the names of fields, in the order of plans."""
 ANYWHERE: tuple[Where, ...] = tuple(_SCENES["places"])
 ALONG: tuple[Where, ...] = tuple(_SCENES["sets"]["along"])
 ACROSS: tuple[Where, ...] = tuple(_SCENES["sets"]["across"])

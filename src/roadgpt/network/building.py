@@ -39,11 +39,11 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from itertools import pairwise
 
-from roadgpt.brief.junctions import Side, Way, side_of
+from roadgpt.brief.junctions import side_of
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.geometry.curve import wrapped
-from roadgpt.language.names import Control
+from roadgpt.language.names import Control, Side, Way
 from roadgpt.network.lane_along import added
 from roadgpt.network.network import (
     Arm,

@@ -18,9 +18,9 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.brief.junctions import RAMPS, Way, side_of
+from roadgpt.brief.junctions import RAMPS, side_of
 from roadgpt.geometry.curve import Array, wrap_angle
-from roadgpt.language.names import Control
+from roadgpt.language.names import Control, Way
 from roadgpt.network.network import (
     Arm,
     Connection,

@@ -50,10 +50,10 @@ from typing import Annotated, Any, Literal, NamedTuple, Self, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, StrictBool, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
-from roadgpt.brief.junctions import LANE_KINDS, RAMPS, Side, side_of
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, side_of
 from roadgpt.brief.words import MOST_LANES
 from roadgpt.errors import UsageError
-from roadgpt.language.names import Control, LaneKind, PlainKind
+from roadgpt.language.names import Control, LaneKind, PlainKind, Side
 from roadgpt.plural import plural
 from roadgpt.road.profile import Marking
 from roadgpt.road.road import FARTHEST

@@ -25,13 +25,13 @@ from pydantic import (
 
 from roadgpt.brief.amount import Amount, Frozen
 from roadgpt.brief.beside import friction_of, slipperiest
-from roadgpt.brief.model import CentreLine
 from roadgpt.brief.plan import read_scene, scene_plan
 from roadgpt.brief.scene import LAND_KINDS, Scene, with_named
 from roadgpt.brief.visibility import weather_drawn
 from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP
 from roadgpt.errors import BriefError, UsageError
 from roadgpt.ground.given import BESIDE, NAME, GivenGround
+from roadgpt.language.names import CentreLine
 from roadgpt.settings import ROWS, field, span
 
 if TYPE_CHECKING:

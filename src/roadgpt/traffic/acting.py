@@ -13,10 +13,9 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from roadgpt.brief.junctions import Side
 from roadgpt.brief.scene import ACCELERATES, HEAD_ON, LEAVES, ON_ITS_WAY, Action, Role
 from roadgpt.errors import SceneError
-from roadgpt.language.names import What, Where
+from roadgpt.language.names import Side, What, Where
 from roadgpt.language.table import (
     ALONG,
     CUES,

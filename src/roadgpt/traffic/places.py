@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roadgpt.brief.junctions import Side
 from roadgpt.brief.outline import USUALLY_WIDEST
 from roadgpt.brief.scene import Mark, Scene
 from roadgpt.check.measures import measure
 from roadgpt.errors import SceneError
-from roadgpt.language.names import ActorKind, Where
+from roadgpt.language.names import ActorKind, Side, Where
 from roadgpt.network import is_route, network_of
 from roadgpt.network.lanes import lanes_of
 from roadgpt.network.markings import CROSSWALK

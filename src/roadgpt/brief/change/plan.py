@@ -27,11 +27,10 @@ from roadgpt.brief.change.request import (
     Value,
     Way,
 )
-from roadgpt.brief.model import Side
 from roadgpt.brief.plan import CONDITIONS, SCENE, action_plan, read_action, scene_fields, scene_plan
 from roadgpt.brief.scene import Action, Land, Patch, Role, Scene
 from roadgpt.errors import BriefError, EditError
-from roadgpt.language.names import Kind, Sharpness
+from roadgpt.language.names import Kind, Sharpness, Side
 from roadgpt.language.table import CUES, FLOWS, LANDFORMS, MANEUVERS, PLACES, ROAD_USERS, WEATHER
 from roadgpt.language.table import NUMBERS as OF_SCENES
 

@@ -3,9 +3,8 @@
 from dataclasses import dataclass, field
 from typing import Literal, cast
 
-from roadgpt.brief.model import Side
 from roadgpt.brief.scene import Action, Scene
-from roadgpt.language.names import Kind, Sharpness, Slope, Where
+from roadgpt.language.names import Kind, Sharpness, Side, Slope, Where
 from roadgpt.language.names import What as Doing
 
 Noun = Literal["turn", "straight", "end", "start", "road"]

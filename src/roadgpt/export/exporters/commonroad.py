@@ -12,13 +12,13 @@ from pathlib import Path
 
 import numpy as np
 
-from roadgpt.brief.junctions import SIDE, Way, side_of
+from roadgpt.brief.junctions import SIDE, side_of
 from roadgpt.export.ego import Poses, calm_speed, start_of
 from roadgpt.export.georeference import LATITUDE, LONGITUDE
 from roadgpt.export.lanelets import Lanelet, arms_of, lanelets_of
 from roadgpt.export.markup import XmlElement, number
 from roadgpt.geometry import wrap_angle
-from roadgpt.language.names import Control
+from roadgpt.language.names import Control, Way
 from roadgpt.network import Arm, Connection, Junction, Leg, Network, legs_of, network_of
 from roadgpt.network.markings import gives_way_to_ring, line_to_stop_at, place_of_sign
 from roadgpt.road import Road, World

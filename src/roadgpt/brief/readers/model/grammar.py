@@ -1,21 +1,27 @@
 """Grammars of tokens: which tokens may come next, and what follows each token.
 
+Behind a road, a route or a map stand ``:`` with the wishes for it that a text tells among its story (its kind,
+its design speed, where one comes from), and ``&&`` with the scene:
+
+    | lanes= 1 against= 1 : country from= south speed= [2] && ego v= [1] ; truck ahead : brake ; night
+
 A grammar is built of symbols by the functions below. No two alternatives of a symbol begin with the same
 token, so the next token decides between them (LL(1)). The state of an unfinished text is a stack of symbols.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from math import inf
-from typing import get_args
+from typing import cast, get_args
 
+from roadgpt.brief.amount import Frozen
 from roadgpt.brief.beside import BESIDE
 from roadgpt.brief.design_speed import FASTEST, SLOWEST
-from roadgpt.brief.junctions import LANE_KINDS, LONGEST_ROUTE, RAMPS, ROUTE, Side
+from roadgpt.brief.junctions import FORMS, LONGEST_ROUTE, ROUTE, TAKES
 from roadgpt.brief.languages import pattern_of
-from roadgpt.brief.model import CentreLine
-from roadgpt.brief.plan import HALFWAY, ONE_WAY
+from roadgpt.brief.normal import STRAIGHT
+from roadgpt.brief.plan import HALFWAY, SCENE, SIDES, TESTED_CAR
 from roadgpt.brief.readers.model.slots import LARGEST_SEEN, NumberSlot
 from roadgpt.brief.readers.model.vocabulary import (
     FACTORS,
@@ -29,19 +35,45 @@ from roadgpt.brief.readers.model.vocabulary import (
     ONE,
     ORDER,
     PERCENTS,
+    RAINS,
     ROUNDABOUT,
     SIGNS,
-    SLOPES,
     SLOT_TOKENS,
     STEPS,
     UNIT_OF,
+    WISHES,
     Compared,
     value_of,
+    written,
 )
 from roadgpt.brief.refusal import CLASHING, OF_CAUSES
-from roadgpt.brief.words import Surroundings
-from roadgpt.language.names import Control, IslandSize, MapJunctionKind, Sharpness, Size, Take
-from roadgpt.language.table import ROADS
+from roadgpt.brief.scene import LAND_KINDS, ON_ITS_WAY, ONE_OF, Land, Lie, Patch, Role
+from roadgpt.language.names import (
+    Compass,
+    Control,
+    JunctionKind,
+    MapJunctionKind,
+    Sharpness,
+    Size,
+    Surroundings,
+    Take,
+    What,
+    Where,
+)
+from roadgpt.language.table import (
+    CUES,
+    FLOWS,
+    LANDFORMS,
+    LIGHTS,
+    MANEUVERS,
+    NUMBERS,
+    PARTS,
+    PLACES,
+    ROAD_USERS,
+    ROADS,
+    SURFACES,
+    WEATHER,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,17 +267,10 @@ class Numbers:
         return (sequel(any_of(*ways), is_open=True),) if ways else ()
 
 
-SIDES: tuple[str, ...] = get_args(Side)
 SHARPNESS, SIZES = one_of(*get_args(Sharpness)), one_of(*get_args(Size))
 CONTROLS = one_of(*get_args(Control))
-PLACES = ("starts(", "ends(")
-JUNCTIONS = tuple(kind for kind in get_args(MapJunctionKind) if kind != ROUNDABOUT)
-FLAGS = [one_of(flag) for flag in ("skew", "all_way", "crosswalk", "others_stop")]
 LISTED_WAYS = ("left+right", "left+straight", "right+straight", "left+right+straight")
-STRAIGHT_KINDS = ("straight", "crest", "dip")
 END = "<end>"
-IN_WORDS = {"against": ONE_WAY, "len": HALFWAY}
-"""Words that can replace a key and its amount, by the name of the key."""
 MOST_CLAUSES = 20
 MOST_JUNCTIONS = 9  # with merges and changes of lanes
 MOST_KINDS = 4  # of junctions on a map
@@ -294,19 +319,10 @@ def _refusals() -> tuple[Symbol, ...]:
 def description(numbers: Numbers) -> Symbol:
     """Returns the symbol for a road, a route or a map."""
     clause = _clause(numbers)
-    wishes = in_order(
-        SHARPNESS,
-        one_of(*SLOPES),
-        one_of(*get_args(Surroundings)),
-        *map(one_of, ("alternating", "alike", "hard", "motorway", "divided", "left_hand")),
-        *(_road_key(key, numbers) for key in ROADS["keys"]["road"]),
-        *(sequel(one_of(place), clause, one_of(")")) for place in PLACES),
-        _beside(),
-        sequel(one_of("centre="), one_of(*get_args(CentreLine))),
-        numbers.design_speed(),
-        least=1,
-    )
-    whole = sequel(one_of("|"), wishes)
+    apart = {name: sequel(one_of(f"{name}("), clause, one_of(")")) for name in ("starts", "ends")}
+    apart |= {"beside": _beside(), "speed": numbers.design_speed()}
+    apart["length"] = any_of(one_of(HALFWAY), numbers.keyed("len="))
+    whole = sequel(one_of("|"), in_order(*_parts("road", numbers, **apart), least=1))
     clauses = sequel(clause, list_tail(";", clause, MOST_CLAUSES - 1), replace(whole, may_be_empty=True))
     return any_of(_route(any_of(whole, clauses), numbers), _map(numbers))
 
@@ -317,9 +333,28 @@ def _beside() -> Symbol:
     return sequel(one_of("beside("), names, list_tail(",", names, MOST_NAMES - 1), one_of(")"))
 
 
-def _road_key(key: str, numbers: Numbers) -> Symbol:
-    keyed = numbers.keyed(f"{key}=", is_signed=key == "climb")
-    return any_of(one_of(IN_WORDS[key]), keyed) if key in IN_WORDS else keyed
+def _parts(
+    thing: str, numbers: Numbers, names: Iterable[str] | None = None, **apart: Symbol
+) -> Iterator[Symbol]:
+    """Yields the symbols for what a clause, road, junction or map can have, by the names of fields; ``apart``
+    has those that are no flags, words and numbers."""
+    parts = PARTS[thing]
+    for name in parts if names is None else names:
+        part = parts[name]
+        if name in apart:
+            yield apart[name]
+        elif not part.token:
+            continue
+        elif part.words:
+            words = one_of(*(LISTED_WAYS if part.list else ()), *part.words)
+            yield sequel(one_of(f"{part.key}="), words) if part.key else words
+        elif part.key:
+            keyed = numbers.keyed(f"{part.key}=", is_signed=(thing, name) == ("road", "climb"))
+            zero = [one_of(part.zero)] if part.zero else []
+            double = [numbers.keyed(f"{part.double}=")] if part.double else []
+            yield any_of(*zero, keyed, *double)
+        else:
+            yield one_of(name)
 
 
 def _route(road: Symbol, numbers: Numbers) -> Symbol:
@@ -347,41 +382,17 @@ def _whole(numbers: Numbers) -> Symbol:
 
 
 def _junction(numbers: Numbers) -> Symbol:
-    side, length = sequel(one_of("side="), one_of(*SIDES)), numbers.keyed("len=")
-    to_ramps = ("ramp", "main")
-    takes = one_of(*(take for take in get_args(Take) if take not in to_ramps))
-    listed = one_of(*LISTED_WAYS, *SIDES, "straight")
-    ways, *ends = (sequel(one_of(key), listed) for key in ("ways=", "in=", "out=", "turn_lane="))
-    degrees, angle, taper = map(numbers.keyed, ("deg=", "angle=", "taper="))
-    exit_, arms, lanes, outer = map(numbers.keyed, ("exit=", "arms=", "lanes=", "outer="))
-    turn_length = numbers.keyed("turn_len=")
-    radius = any_of(numbers.keyed("r="), numbers.keyed("d="))
-    forms: tuple[tuple[Sequence[str], tuple[Symbol, ...]], ...] = (
-        (JUNCTIONS, (takes, CONTROLS, *FLAGS, ways, *ends, turn_length, degrees, angle, arms)),
-        (
-            [ROUNDABOUT],
-            (
-                takes,
-                one_of(*get_args(IslandSize)),
-                CONTROLS,
-                *FLAGS[1:],
-                ways,
-                exit_,
-                arms,
-                radius,
-                outer,
-                lanes,
-            ),
-        ),
-        (RAMPS, (one_of(*to_ramps), side, length, taper)),
-        (LANE_KINDS[:2], (side, length)),
-        (LANE_KINDS[2:], (one_of(*SIDES),)),
-    )
-    return any_of(*(sequel(one_of(*kinds), in_order(*parts)) for kinds, parts in forms))
+    def of(form: str, names: Iterable[str]) -> Symbol:
+        kinds = [kind for kind in get_args(JunctionKind) if FORMS[kind] == form]
+        takes = (take for take in get_args(Take) if any(take in TAKES[kind] for kind in kinds))
+        return sequel(one_of(*kinds), in_order(*_parts("junction", numbers, names, take=one_of(*takes))))
+
+    return any_of(*(of(form, names) for form, names in ROADS["forms"].items()))
 
 
 def _map(numbers: Numbers) -> Symbol:
-    kinds, count = one_of(*JUNCTIONS, ROUNDABOUT), numbers.keyed("x")
+    plain = (kind for kind in get_args(MapJunctionKind) if kind != ROUNDABOUT)
+    kinds, count = one_of(*plain, ROUNDABOUT), numbers.keyed("x")
     route = sequel(one_of(f"{ROUTE}="), _ways(LONGEST_ROUTE))
     tail = in_order(*map(numbers.keyed, ("len=", "blocks=", "dead_ends=")), CONTROLS, route)
     kind = sequel(kinds, in_order(count, CONTROLS))
@@ -397,17 +408,12 @@ def _ways(most: int) -> Symbol:
 
 
 def _clause(numbers: Numbers) -> Symbol:
-    turning = (kind for kind in KINDS if kind not in STRAIGHT_KINDS)
-    count, keys = (
-        numbers.keyed("x"),
-        {key: numbers.keyed(key) for key in (*("deg=", "r=", "len=", "pct="), "climb=")},
-    )
-    straight = (count, SIZES, one_of(*SLOPES), keys["len="], keys["pct="], keys["climb="])
-    words = (one_of(*SIDES), SHARPNESS, one_of(*SLOPES), one_of("alternating"))
-    return any_of(
-        sequel(one_of(*STRAIGHT_KINDS), in_order(*straight)),
-        sequel(one_of(*turning), in_order(count, *words, *keys.values())),
-    )
+    def of(what: str, kinds: Iterable[str]) -> Symbol:
+        names = [name for name, part in PARTS["clause"].items() if part.of in ("", what)]
+        return sequel(one_of(*kinds), in_order(numbers.keyed("x"), *_parts("clause", numbers, names)))
+
+    straight = [kind for kind in KINDS if kind in STRAIGHT]
+    return any_of(of("straights", straight), of("turns", [kind for kind in KINDS if kind not in straight]))
 
 
 MOST_CHANGES = 8
@@ -500,18 +506,23 @@ def _climb(numbers: Numbers) -> Symbol:
     return any_of(*((exact, by) if metres else ()), *factors(numbers))
 
 
-def _value(name: str, numbers: Numbers, like: Symbol) -> Symbol:
-    """Returns the forms of a value: an exact number or a bound, each also as the place that has it; a
-    difference or a factor, each also of the value of another place; or "more" or "less"."""
-    found = numbers.of(name)
+def _value(name: str, numbers: Numbers, like: Symbol | None = None) -> Symbol:
+    """Returns the forms of a value: an exact number or a bound, each also as the place ``like`` that has
+    it; a difference or a factor, each also of the value of another place; or "more" or "less"."""
+    found, key = numbers.of(name), name.removesuffix("=")
     figures = [one_of(*found)] if found else []
-    other = in_order(sequel(one_of("="), like))
+    is_signed = any(number.key == key and number.least < 0 for number in NUMBERS.values())
+    below = [sequel(one_of(MINUS), *figures)] if is_signed and found else []
+    values, other = figures, list[Symbol]()
+    if like is not None:
+        values, other, below = [*figures, like], [in_order(sequel(one_of("="), like))], []
     return any_of(
-        sequel(one_of("=", BOUND), any_of(*figures, like)),
-        *(sequel(one_of("+", MINUS), figure, other) for figure in figures),
-        *(sequel(factor, other) for factor in factors(numbers)),
+        *([sequel(one_of("="), any_of(*values, *below))] if values else []),
+        *([sequel(one_of(BOUND), any_of(*values))] if values else []),
+        *(sequel(one_of("+", MINUS), figure, *other) for figure in figures),
+        *(sequel(each, one_of(BOUND)) for each in values),
+        *(sequel(factor, *other) for factor in factors(numbers)),
         *MORE_OR_LESS,
-        *(sequel(each, one_of(BOUND)) for each in (*figures, like)),
     )
 
 
@@ -533,3 +544,212 @@ def _new(numbers: Numbers) -> Symbol:
         _position(_place(numbers, DEEPEST - 1), NEXT_TO),
     )
     return sequel(one_of(*KINDS), in_order(*parts))
+
+
+ACTORS, WHATS, AIRS = written(ROAD_USERS), cast("list[What]", written(MANEUVERS)), written(WEATHER)
+LANDS, WHERES = written(LANDFORMS), cast("list[Where]", written(PLACES))
+STRUCTURES = written(form for form, row in LANDFORMS.items() if row.structure)
+MOST_ACTORS, MOST_PATCHES, MOST_LANDS, MOST_ACTIONS = 6, 2, 5, 4
+MOST_SAME = tuple(map(str, range(1, 10)))
+ONE_SIDE = one_of(*SIDES, "opposite")
+WHICH = (
+    *(any_of(one_of(*MOST_SAME), sequel(one_of("-"), one_of(*MOST_SAME))) for _ in range(3)),
+    one_of("all"),
+)
+"""Which of several alike things are meant."""
+
+
+def whole(numbers: Numbers) -> Symbol:
+    """Returns the symbol for a road, a route or a map, with what is told beside it."""
+    return sequel(description(numbers), told(numbers))
+
+
+def told(numbers: Numbers) -> Symbol:
+    """Returns the symbol for a scene and the wishes before it; all of it may be left out."""
+    origin = sequel(one_of("from="), one_of(*get_args(Compass)))
+    wishes = in_order(one_of(*get_args(Surroundings), "motorway"), origin, numbers.design_speed(), least=1)
+    scene = sequel(one_of(SCENE), _joined([_tested_car(numbers), *_parts_of_scene(numbers)]))
+    both = any_of(sequel(one_of(WISHES), wishes, replace(scene, may_be_empty=True)), scene)
+    return replace(both, may_be_empty=True)
+
+
+def _tested_car(numbers: Numbers) -> Symbol:
+    lane = sequel(one_of("lane="), any_of(one_of(*MOST_SAME[:4]), sequel(one_of("-"), one_of("1", "2", "3"))))
+    ways = one_of(*SIDES, "straight")
+    return sequel(one_of(TESTED_CAR), in_order(one_of("robot"), ways, numbers.keyed("v="), lane, least=1))
+
+
+def _parts_of_scene(numbers: Numbers) -> list[Symbol]:
+    """Returns the symbols for the parts of a scene, in their order, but for the tested car."""
+    key = numbers.keyed
+    return [
+        *[_actor(numbers)] * MOST_ACTORS,
+        one_of(*FLOWS),
+        sequel(one_of("oncoming"), one_of(*FLOWS, "none")),
+        *(sequel(one_of("parked"), one_of(*SIDES)) for _ in SIDES),
+        *(_air(kind, numbers) for kind in AIRS),
+        one_of(*LIGHTS),
+        one_of(*SURFACES),
+        *[sequel(one_of("slippery"), in_order(*map(key, ("mu=", "s=", "len="))))] * MOST_PATCHES,
+        *[_land(numbers)] * MOST_LANDS,
+    ]
+
+
+def _joined(parts: Sequence[Symbol]) -> Symbol:
+    """Returns the symbol for one or more of the parts, each at most once, in this order, and ';' between."""
+
+    @cache
+    def behind(index: int) -> Symbol:
+        if index == len(parts):
+            return one_of(may_be_empty=True)
+        return sequel(one_of(";"), later(lambda: since(index)), is_open=True)
+
+    @cache
+    def since(index: int) -> Symbol:
+        return any_of(
+            *(sequel(part, behind(place + 1)) for place, part in enumerate(parts) if place >= index)
+        )
+
+    return since(0)
+
+
+def _air(kind: str, numbers: Numbers) -> Symbol:
+    """Returns the symbol for a kind of weather, with or without an amount of the text."""
+    symbol = sequel(one_of(kind), numbers.amount(f"{kind}=", may_be_empty=True))
+    return any_of(symbol, one_of(*RAINS)) if kind == "rain" else symbol
+
+
+def _actor(numbers: Numbers) -> Symbol:
+    def after_kind(kind: str) -> Stack:
+        places = [where for where in WHERES if kind in PLACES[where].who]
+        after = {str(where): partial(_after_place, kind, where, numbers) for where in places}
+        return sequel(numbers.keyed("x"), is_open=True), Symbol(lambda: places, lambda where: after[where]())
+
+    return Symbol(lambda: ACTORS, after_kind)
+
+
+def _after_place(kind: str, where: Where, numbers: Numbers) -> Stack:
+    sides = [*SIDES, *(["opposite"] if where == "junction" else [])] if PLACES[where].side else []
+    fields = [name for name in NUMBERS if name in Role.model_fields and where in NUMBERS[name].where]
+    if kind not in MANEUVERS["keep"].who or where == "parked":
+        fields = [name for name in fields if name not in ("speed", "faster")]
+    if where == "crossing":  # the networks were not trained to write its gap to a part of the route
+        fields.remove("gap")
+    apart = (group for group in ONE_OF[:-1] if "at" not in group)
+    groups = [[name for name in fields if name in group] for group in (*apart, ["away"])]
+    keys = [_one_key(names, numbers) for names in groups]
+    doings = [what for what in WHATS if kind in MANEUVERS[what].who]
+    first = [what for what in doings if where in MANEUVERS[what].starts]
+    later_on = [what for what in doings if what not in ON_ITS_WAY or what in first]
+    actions = _actions(first, later_on, MOST_ACTIONS, numbers)
+    return (
+        in_order(*([one_of(*sides)] if sides else []), *keys, _mark()),
+        sequel(one_of(":"), actions, is_open=True) if first else one_of(may_be_empty=True),
+    )
+
+
+def _actions(first: Sequence[What], later_on: Sequence[What], most: int, numbers: Numbers) -> Symbol:
+    after = {str(what): partial(_after_doing, what, numbers) for what in first}
+    head = Symbol(lambda: first, lambda what: after[what]())
+    if most == 1:
+        return head
+    return sequel(
+        head,
+        sequel(one_of(","), later(lambda: _actions(later_on, later_on, most - 1, numbers)), is_open=True),
+    )
+
+
+def _after_doing(what: What, numbers: Numbers) -> Stack:
+    doing = MANEUVERS[what]
+    side = [one_of(*SIDES)] if doing.side else []
+    keys = [_one_key([name], numbers) for name in NUMBERS if name in doing.numbers]
+    cue = any_of(_one_key([name for name in CUES if name in NUMBERS], numbers), _mark(is_of_action=True))
+    return (in_order(*side, *keys, cue),)
+
+
+def _one_key(names: Sequence[str], numbers: Numbers) -> Symbol:
+    """Returns the symbol for one of several numbers with its key."""
+    given = [NUMBERS[name] for name in names if name in NUMBERS]
+    return any_of(*(numbers.keyed(f"{each.key}=", is_signed=each.least < 0) for each in given))
+
+
+@cache
+def _mark(is_of_action: bool = False) -> Symbol:
+    """Returns the symbol for a part of the route, such as "after turn 1", and, for when an action begins,
+    also for what another actor does, such as "with truck 1 brake"."""
+    last = sequel(one_of("-"), one_of("1"))
+    place = sequel(one_of("turn", "junction"), any_of(one_of(*MOST_SAME), last))
+    event = sequel(one_of(*ACTORS), one_of(*MOST_SAME), one_of(*WHATS))
+    if not is_of_action:
+        return sequel(one_of("after", "before", "in"), place)
+    after = sequel(one_of("after"), any_of(place, event))
+    return any_of(sequel(one_of("before", "in"), place), after, sequel(one_of("with"), event))
+
+
+def _land(numbers: Numbers) -> Symbol:
+    count, length = numbers.keyed("x"), numbers.keyed("len=")
+    structures = sequel(one_of(*STRUCTURES), in_order(count, length))
+    away = numbers.keyed("away=")
+    lies = in_order(count, one_of(*get_args(Lie)), one_of(*SIDES), length, away)
+    forms = [form for form in LANDS if form not in STRUCTURES]
+    return any_of(structures, sequel(one_of(*forms), lies))
+
+
+def any_change(numbers: Numbers) -> Symbol:
+    """Returns the symbol for a request that changes the road, the scene or both."""
+    change = _scene_change(numbers)
+    scene = sequel(one_of(SCENE), change, list_tail(";", change, MOST_CHANGES - 1))
+    road = sequel(change_request(numbers), replace(scene, may_be_empty=True))
+    return any_of(road, scene)
+
+
+def _scene_change(numbers: Numbers) -> Symbol:
+    """Returns the symbol for one change of a scene: what is added, or something and what is to be of it."""
+    actor = any_of(
+        sequel(one_of("add"), _actions(WHATS, [], 1, numbers)),
+        sequel(one_of("as"), in_order(one_of(*ACTORS), one_of(*WHERES), ONE_SIDE, least=1)),
+        Symbol(lambda: WHATS, lambda what: (_of_doing(cast(What, what), numbers),)),
+        *_of_thing(Role, numbers),
+    )
+    levels = one_of(*FLOWS, "none")
+    things: dict[tuple[str, ...], tuple[Sequence[Symbol], Symbol]] = {
+        (*ACTORS, "actor"): ((*WHICH, one_of(*WHERES), ONE_SIDE), actor),
+        (*LANDS, "landscape"): ((*WHICH, one_of(*SIDES)), any_of(*_of_thing(Land, numbers))),
+        ("slippery",): (WHICH, any_of(*_of_thing(Patch, numbers))),
+        (TESTED_CAR,): ((), any_of(sequel(one_of("v="), _value("v=", numbers)), one_of("remove"))),
+        ("traffic", "oncoming"): ((), any_of(one_of("remove"), levels, *MORE_OR_LESS)),
+        ("land",): ((), any_of(*MORE_OR_LESS)),
+        **{(kind,): ((), any_of(one_of("remove"), _value(f"{kind}=", numbers))) for kind in AIRS},
+        ("parked",): ([one_of(*SIDES)], one_of("remove")),
+        (*LIGHTS, *SURFACES, "scene"): ((), one_of("remove")),
+    }
+    known = [
+        sequel(one_of(*names), in_order(*which), one_of(":"), wish) for names, (which, wish) in things.items()
+    ]
+    parts = {tuple(part.first()): part for part in _parts_of_scene(numbers)}  # each kind once
+    new = any_of(_tested_car(numbers), *parts.values(), one_of(*LAND_KINDS))
+    return any_of(sequel(one_of("add"), new), *known)
+
+
+def _of_thing(kind: type[Frozen], numbers: Numbers) -> list[Symbol]:
+    """Returns the symbols for what can be changed of each thing of a kind: its numbers and how many it is."""
+    keys = [NUMBERS[name].key for name in kind.model_fields if name in NUMBERS]
+    count = one_of(*(each for each in numbers.of("x") if value_of(each, numbers.slots) >= 1))
+    counted = any_of(sequel(one_of(".."), count), sequel(count, one_of("..", may_be_empty=True)))
+    is_counted = "count" in kind.model_fields
+    return [
+        one_of("remove"),
+        *([sequel(one_of("x"), counted)] if is_counted else []),
+        *(sequel(one_of(f"{key}="), _value(f"{key}=", numbers)) for key in keys),
+    ]
+
+
+def _of_doing(what: What, numbers: Numbers) -> Symbol:
+    names = [*MANEUVERS[what].numbers, *(name for name in CUES if name in NUMBERS)]
+    keys = [f"{NUMBERS[name].key}=" for name in names]
+    usual = [_value(keys[0], numbers)] if MANEUVERS[what].numbers else []
+    return any_of(
+        one_of("remove"),
+        *usual,
+        *(sequel(one_of(key), _value(key, numbers)) for key in dict.fromkeys(keys)),
+    )

@@ -11,9 +11,16 @@ import numpy as np
 import numpy.typing as npt
 
 from roadgpt.brief.plan import SCENE
-from roadgpt.brief.readers.model.grammar import END, Evidence, PlanAutomaton, change_request, description
+from roadgpt.brief.readers.model.grammar import (
+    END,
+    Evidence,
+    PlanAutomaton,
+    any_change,
+    change_request,
+    description,
+    whole,
+)
 from roadgpt.brief.readers.model.onnx_runtime import onnxruntime
-from roadgpt.brief.readers.model.scene_grammar import any_change, whole
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, REFUSALS, TOKENS
 from roadgpt.errors import PartError

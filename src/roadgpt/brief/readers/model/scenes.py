@@ -19,7 +19,8 @@ from roadgpt.brief.readers.model.number_words import plain
 from roadgpt.brief.readers.model.slots import NumberSlot, SlottedText
 from roadgpt.brief.readers.model.vocabulary import WISHES, plan_of
 from roadgpt.brief.scene import Land, Scene
-from roadgpt.brief.words import Compass, unaccented
+from roadgpt.brief.words import unaccented
+from roadgpt.language.names import Compass
 from roadgpt.language.table import LANDFORMS, ROAD_USERS, WEATHER, Words
 
 

@@ -13,13 +13,13 @@ from roadgpt.brief.languages import pattern_of
 from roadgpt.brief.plan import SCENE
 from roadgpt.brief.readers.model.slots import LARGEST_SEEN, SLOTS, NumberSlot
 from roadgpt.language.names import Kind, Slope
-from roadgpt.language.table import MANEUVERS, ROADS, WEATHER
+from roadgpt.language.table import MANEUVERS, PARTS, WEATHER
 from roadgpt.language.table import NUMBERS as NUMBERS_OF_SCENES
 from roadgpt.reading import read_text
 
 MULTIPLES = ("2", "0.5", "3", "1.5", "0.333", "4", "0.25", "0.75", "0.667", "2.5", "1.333", "1.25")
 """The factors of one slot, the usual ones first."""
-KEYS = frozenset(f"{key}=" for key in ROADS["keys"]["clause"])
+KEYS = frozenset(f"{part.key}=" for part in PARTS["clause"].values() if part.key)
 """The keys of plans whose numbers may be computed."""
 ONE = frozenset(["pct=", "climb="])
 """The keys of numbers that may differ by 1 from another number without a figure: "a percent steeper"."""
@@ -135,7 +135,8 @@ IN_TEXTS = {
 }  # fmt: skip
 """The units in which texts give numbers of a scene, by those of the table."""
 UNIT_OF = {
-    **{f"{key}=": unit for unit, keys in ROADS["units"].items() for key in keys}, **MEASURED,
+    **{f"{key}=": part.unit for parts in PARTS.values() for part in parts.values() if part.unit
+       for key in filter(None, (part.key, part.double))}, **MEASURED,
     **{f"{each.key}=": IN_TEXTS.get(each.unit, "") for each in NUMBERS_OF_SCENES.values()},
     **{f"{kind}=": "" if row.falls else "metres" for kind, row in WEATHER.items()},
 }  # fmt: skip
