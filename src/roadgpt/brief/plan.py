@@ -66,6 +66,7 @@ from roadgpt.language.names import (
     Way,
 )
 from roadgpt.language.table import (
+    COUNTED,
     LANDFORMS,
     MANEUVERS,
     NUMBERS,
@@ -105,7 +106,7 @@ WHOLE_LENGTH = re.compile(r"\|\|[^|]*\blen=(\d+(?:\.\d+)?)(?![\d.])")
 Model = TypeVar("Model", bound=Frozen)
 
 
-class _Language(NamedTuple):
+class Language(NamedTuple):
     """How plans write one kind of thing."""
 
     parts: Mapping[str, Part]
@@ -116,28 +117,24 @@ class _Language(NamedTuple):
     """The field of what stands behind a key such as "len=", and the function that reads it."""
     of: str = ""
     """The thing, for messages; empty for a road and its parts."""
-    is_counted: bool = False
-    """Whether "x3" says how many there are."""
 
 
-def _language(
-    parts: Mapping[str, Part], of: str = "", is_counted: bool = False, **readers: Callable[[str], object]
-) -> _Language:
+def language(parts: Mapping[str, Part], of: str = "", **readers: Callable[[str], object]) -> Language:
+    """Returns how plans write a thing with these parts; ``readers`` read what stands behind some keys."""
     words = dict[str, tuple[str, object]]()
     keys = dict[str, tuple[str, Callable[[str], object]]]()
     for field, part in parts.items():
-        if part.words and not (part.list or part.unknown):
-            words |= {f"{part.key}={word}" if part.key else word: (field, word) for word in part.words}
-        elif part.key:
+        if part.list or part.unknown or not part.words:
             usual = _sides if part.list else partial(_one_of, part) if part.unknown else read_amount
-            keys[part.key] = field, readers.get(field, usual)
-        elif not part.brackets:
-            words[field] = field, True
+            keys |= {part.key: (field, readers.get(field, usual))} if part.key not in ("", COUNTED) else {}
+        else:
+            before = f"{part.key}=" if part.key else ""
+            words |= {f"{before}{word}": (field, value) for word, value in part.words.items()}
         if part.zero:
             words[part.zero] = field, exactly(0)
         if part.double:
             keys[part.double] = field, lambda text: read_amount(text).times(0.5)
-    return _Language(parts, words, keys, of, is_counted)
+    return Language(parts, words, keys, of)
 
 
 def _sides(text: str) -> tuple[str, ...]:
@@ -183,34 +180,31 @@ def read_ways(text: str) -> tuple[Way, ...]:
 
 
 def _of_scene(model: type[Frozen], fields: Iterable[str], **words: tuple[str, ...]) -> dict[str, Part]:
-    """Returns what a part of a scene can have: words by their fields, and the numbers of some fields."""
-    numbers = {
-        each: Part(NUMBERS[each].key) for each in fields if each in NUMBERS and each in model.model_fields
-    }
-    return {field: Part(words=those) for field, those in words.items()} | numbers
+    """Returns what a part of a scene can have: how many it is, words by their fields, and the numbers of some
+    fields."""
+    parts = {field: Part(words={word: word for word in those}) for field, those in words.items()}
+    parts |= {each: Part(NUMBERS[each].key) for each in fields if each in NUMBERS}
+    parts = {field: part for field, part in parts.items() if field in model.model_fields}
+    return {"count": PARTS["clause"]["count"], **parts} if "count" in model.model_fields else parts
 
 
-CLAUSE = _language(PARTS["clause"], is_counted=True)
-ROAD = _language(
+CLAUSE = language(PARTS["clause"])
+ROAD = language(
     PARTS["road"],
     map_size=partial(_one_number, "map has one size", SMALLEST_MAP, LARGEST_MAP, "m", "map_size=500"),
     speed=partial(_one_number, "road has one design speed", SLOWEST, FASTEST, "km/h", "speed=80"),
 )
-JUNCTION = _language(PARTS["junction"], "junction")
-MAP_OF_ROADS = _language(PARTS["map"], "map", route=read_ways)
+JUNCTION, JUNCTIONS_OF_MAP = language(PARTS["junction"], "junction"), language(PARTS["junctions"])
+MAP_OF_ROADS = language(PARTS["map"], "map", route=read_ways)
 TESTED_CAR = "ego"
 SIDES = get_args(Side)
-AN_ACTOR = _language(
-    _of_scene(Role, NUMBERS, where=tuple(PLACES), side=(*SIDES, "opposite")), "road user", is_counted=True
-)
-AN_ACTION = _language(_of_scene(Action, NUMBERS, side=SIDES), "manoeuvre")
+AN_ACTOR = language(_of_scene(Role, NUMBERS, where=tuple(PLACES), side=(*SIDES, "opposite")), "road user")
+AN_ACTION = language(_of_scene(Action, NUMBERS, side=SIDES), "manoeuvre")
 OF_ITSELF = _of_scene(Scene, NUMBERS, turn=get_args(Way), person=get_args(Person)) | {"lane": Part("lane")}
-ITSELF = _language(OF_ITSELF, TESTED_CAR, lane=_lane_number)
-A_LAND = _language(
-    _of_scene(Land, Land.model_fields, lie=get_args(Lie), side=SIDES), "landscape", is_counted=True
-)
+ITSELF = language(OF_ITSELF, TESTED_CAR, lane=_lane_number)
+A_LAND = language(_of_scene(Land, Land.model_fields, lie=get_args(Lie), side=SIDES), "landscape")
 SLIPPERY = "slippery"
-A_PATCH = _language(_of_scene(Patch, Patch.model_fields), "slippery place")
+A_PATCH = language(_of_scene(Patch, Patch.model_fields), "slippery place")
 CLOCK = "clock"
 CONDITIONS = {
     word: (field, word)
@@ -227,7 +221,7 @@ MARK = re.compile(
 def plan(brief: Brief) -> str:
     """Returns the plan of a Brief, without ``words``, ``unused``, ``confidence`` and ``other``."""
     is_usual = brief.surroundings is not None and brief.speed == USUAL[brief.surroundings]
-    mark, wishes = WHOLE, _written(brief.model_copy(update={"speed": None}) if is_usual else brief, ROAD)
+    mark, wishes = WHOLE, written(brief.model_copy(update={"speed": None}) if is_usual else brief, ROAD)
     if brief.junctions:
         parts = [plan(brief.stretches[0])]
         for junction, stretch in zip(brief.junctions, brief.stretches[1:], strict=True):
@@ -241,9 +235,14 @@ def plan(brief: Brief) -> str:
     return f"{line} {SCENE} {scene_plan(brief.scene)}".strip() if brief.scene != Scene() else line
 
 
-def _written(thing: Frozen, language: _Language) -> list[str]:
-    given = ((field, part, getattr(thing, field)) for field, part in language.parts.items())
-    return [_text(field, part, value) for field, part, value in given if value or isinstance(value, float)]
+def written(thing: Any, language: Language) -> list[str]:
+    """Returns what a thing has, as it is written in plans."""
+    said = list[str]()
+    for field, part in language.parts.items():
+        value, usual = getattr(thing, field), part.usual
+        if (value or isinstance(value, float)) and (not usual or value not in (usual, exactly(usual))):
+            said.append(_text(field, part, value))
+    return said
 
 
 def _text(field: str, part: Part, value: Any) -> str:
@@ -251,40 +250,35 @@ def _text(field: str, part: Part, value: Any) -> str:
         return f"{field}({_clause(value) if isinstance(value, Clause) else ', '.join(value)})"
     if part.zero and value == exactly(0):
         return part.zero
-    match value:
-        case bool():
-            return field
-        case Amount():
-            said = amount_text(value)
-        case tuple():
-            said = "+".join(value)
-        case _:
-            said = value if isinstance(value, str) else figure(value)
-    return f"{part.key}={said}" if part.key else said
+    if isinstance(value, Amount):
+        said = amount_text(value)
+    elif part.list:
+        said = "+".join(value)
+    elif part.words:
+        said = next((word for word, its in part.words.items() if its == value), "")
+    else:
+        said = figure(value, 6)
+    return said if not part.key else f"{part.key}{said}" if part.key == COUNTED else f"{part.key}={said}"
 
 
 def _clause(clause: Clause) -> str:
-    return " ".join([clause.kind, *_times(clause.count), *_written(clause, CLAUSE)])
-
-
-def _times(count: Amount) -> list[str]:
-    return [] if count == exactly(1) else [f"x{amount_text(count)}"]
+    return " ".join([clause.kind, *written(clause, CLAUSE)])
 
 
 def junction_plan(junction: JunctionClause) -> str:
     """Returns a junction as part of a plan, such as "crossroads left lights"."""
-    return " ".join([junction.kind, *_written(junction, JUNCTION)])
+    return " ".join([junction.kind, *written(junction, JUNCTION)])
 
 
 def map_plan(asked: MapClause) -> str:
     """Returns a map as a plan, such as "map columns=3 rows=2"."""
     kinds = [_counted(each) for each in sorted(asked.junctions, key=lambda each: each.control is None)]
-    line = " ".join(filter(None, [MAP, "; ".join(kinds), *_written(asked, MAP_OF_ROADS)]))
+    line = " ".join(filter(None, [MAP, "; ".join(kinds), *written(asked, MAP_OF_ROADS)]))
     return "; ".join([line, *map(_counted, asked.signed)])
 
 
 def _counted(each: JunctionCount) -> str:
-    return " ".join(filter(None, [each.kind, *_times(each.count), each.control]))
+    return " ".join([each.kind, *written(each, JUNCTIONS_OF_MAP)])
 
 
 def read_plan(line: str) -> Brief:
@@ -443,7 +437,7 @@ def _with_side_of_climb(fields: dict[str, object]) -> dict[str, object]:
     return {**fields, **way, "climb": climb}
 
 
-def _read_words(fields: dict[str, object], words: Iterable[str], language: _Language) -> dict[str, object]:
+def _read_words(fields: dict[str, object], words: Iterable[str], language: Language) -> dict[str, object]:
     """Sets the fields that words name, and returns them."""
     for word in words:
         key, equals, value = word.partition("=")
@@ -452,7 +446,7 @@ def _read_words(fields: dict[str, object], words: Iterable[str], language: _Lang
         elif equals and key in language.keys:
             name, read = language.keys[key]
             _set(fields, name, read(value))
-        elif language.is_counted and word.startswith("x") and word[1:2] in "0123456789.":
+        elif "count" in language.parts and word.startswith(COUNTED) and word[1:2] in "0123456789.":
             _set(fields, "count", read_amount(word[1:]))
         elif language.of:
             known = ", ".join(sorted((*language.words, *(f"{key}=" for key in language.keys))))
@@ -482,28 +476,28 @@ def _made(model: type[Model], fields: dict[str, object], text: str) -> Model:
 
 def scene_plan(scene: Scene) -> str:
     """Returns a scene as it stands in a plan, such as "truck ahead gap=30: brake; medium"; "" for none."""
-    itself = _written(scene, ITSELF)
+    itself = written(scene, ITSELF)
     line = [" ".join([TESTED_CAR, *itself])] if itself else []
     for role in scene.actors:
-        actor = _marked([role.kind, *_times(role.count)], role, AN_ACTOR)
+        actor = _marked(role.kind, role, AN_ACTOR)
         actions = ", ".join(map(action_plan, role.actions))
         line.append(f"{actor}: {actions}" if actions else actor)
     line += [scene.flow or "", f"oncoming {scene.oncoming}" if scene.oncoming else ""]
     line += [f"parked {side}" for side in scene.parked]
     line += [f"{air.kind} {amount_text(air.amount)}" for air in scene.weather]
-    patches = [" ".join([SLIPPERY, *_written(patch, A_PATCH)]) for patch in scene.slippery]
-    lands = [" ".join([each.kind, *_times(each.count), *_written(each, A_LAND)]) for each in scene.landscape]
+    patches = [" ".join([SLIPPERY, *written(patch, A_PATCH)]) for patch in scene.slippery]
+    lands = [" ".join([each.kind, *written(each, A_LAND)]) for each in scene.landscape]
     clock = f"{CLOCK} {scene.clock}" if scene.clock else ""
     return "; ".join(filter(None, [*line, clock, scene.light, scene.surface, *patches, scene.land, *lands]))
 
 
 def action_plan(action: Action) -> str:
     """Returns an action as it stands in a plan, such as "brake decel=6 after turn 1"."""
-    return _marked([action.what], action, AN_ACTION)
+    return _marked(action.what, action, AN_ACTION)
 
 
-def _marked(head: list[str], thing: Role | Action, language: _Language) -> str:
-    return " ".join([*head, *_written(thing, language), *([str(thing.at)] if thing.at else [])])
+def _marked(head: str, thing: Role | Action, language: Language) -> str:
+    return " ".join([head, *written(thing, language), *([str(thing.at)] if thing.at else [])])
 
 
 def read_scene(text: str) -> Scene:

@@ -165,7 +165,9 @@ class Part(NamedTuple):
     """What a thing can have, as plans write it; ``roads.toml`` explains the fields."""
 
     key: str = ""
-    words: tuple[str, ...] = ()
+    words: Mapping[str, Any] = MappingProxyType({})
+    """Each with the value that it means."""
+    usual: float | None = None
     unit: str = ""
     of: str = ""
     zero: str = ""
@@ -223,14 +225,19 @@ def named_in(part: str) -> tuple[str, ...]:
     return tuple(ROADS[part].get("rows", ROADS[part]))
 
 
+def _part(name: str, row: Mapping[str, Any]) -> Part:
+    said = row.get("words", {} if "key" in row or "brackets" in row else {name: True})
+    named = dict(zip(named_in(said), named_in(said), strict=True)) if isinstance(said, str) else said
+    words = {word: tuple(its) if isinstance(its, list) else its for word, its in named.items()}
+    return Part(**{**row, "words": words})
+
+
 PARTS: Mapping[str, Mapping[str, Part]] = {
-    thing: {
-        name: Part(**{**row, "words": named_in(row["words"]) if "words" in row else ()})
-        for name, row in parts.items()
-    }
-    for thing, parts in ROADS["parts"].items()
+    thing: {name: _part(name, row) for name, row in parts.items()} for thing, parts in ROADS["parts"].items()
 }
-"""What clauses, roads, junctions and maps can have, by the names of fields, in the order of plans."""
+"""What clauses, roads, junctions, maps and changes can have, by names of fields, in the order of plans."""
+COUNTED = "x"
+"""The key of how many there are, which stands without "=" before the number."""
 ANYWHERE: tuple[Where, ...] = tuple(_SCENES["places"])
 ALONG: tuple[Where, ...] = tuple(_SCENES["sets"]["along"])
 ACROSS: tuple[Where, ...] = tuple(_SCENES["sets"]["across"])

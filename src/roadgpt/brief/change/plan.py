@@ -13,10 +13,8 @@ from typing import Any, Literal, TypeVar, cast, get_args
 
 from roadgpt.brief.amount import Frozen, figure
 from roadgpt.brief.change.request import (
-    HALVES,
     MUCH,
     SLIGHTLY,
-    SUPERLATIVES,
     Change,
     EditRequest,
     Place,
@@ -27,11 +25,33 @@ from roadgpt.brief.change.request import (
     Value,
     Way,
 )
-from roadgpt.brief.plan import CONDITIONS, SCENE, action_plan, read_action, scene_fields, scene_plan
+from roadgpt.brief.plan import (
+    CONDITIONS,
+    SCENE,
+    Language,
+    action_plan,
+    language,
+    read_action,
+    scene_fields,
+    scene_plan,
+    written,
+)
 from roadgpt.brief.scene import Action, Land, Patch, Role, Scene
 from roadgpt.errors import BriefError, EditError
 from roadgpt.language.names import Kind, Sharpness, Side
-from roadgpt.language.table import CUES, FLOWS, LANDFORMS, MANEUVERS, PLACES, ROAD_USERS, WEATHER
+from roadgpt.language.table import (
+    COUNTED,
+    CUES,
+    FLOWS,
+    LANDFORMS,
+    MANEUVERS,
+    PARTS,
+    PLACES,
+    ROAD_USERS,
+    ROADS,
+    WEATHER,
+    named_in,
+)
 from roadgpt.language.table import NUMBERS as OF_SCENES
 
 ACTORS, LANDS = (*ROAD_USERS, "actor"), (*LANDFORMS, "landscape")
@@ -159,14 +179,7 @@ def _value(change: Value) -> Iterator[str]:
 def _added(change: Change) -> Iterator[str]:
     assert change.target is not None
     yield change.kind or change.target.noun or "turn"
-    if change.count != 1:
-        yield f"x{change.count}"
-    yield from (word for word in (change.side, change.sharpness, change.slope) if word)
-    for key, field in NUMBERS.items():
-        if (value := getattr(change, field)) is not None:
-            yield f"{key}={figure(value, 6)}"
-    if change.is_whole:
-        yield "whole"
+    yield from written(change, NEW)
     if change.place:
         yield _position(change.place)
 
@@ -181,17 +194,8 @@ def _position(place: Place) -> str:
 def _place(target: Target) -> str:
     """Returns the text of a target; without a noun it becomes a turn, which is how ``pointing`` reads it."""
     words: list[str] = [target.kind or target.noun or "turn"]
-    if target.numbers:
-        words.append(",".join(map(str, target.numbers)))
-    words += ["all"] if target.every else []
-    words += ["middle"] if target.middle else []
-    words += [name for name, most in SUPERLATIVES.items() if most == target.most]
-    words += [f"x{target.count}"] if target.count is not None else []
-    words += [word for word in (target.side, target.sharpness, target.way, target.size) if word]
-    for key in ("deg", "len"):
-        if (value := getattr(target, NUMBERS[key])) is not None:
-            words.append(f"{key}={figure(value, 6)}")
-    words += [name for name, half in HALVES.items() if half == target.half]
+    words += [",".join(map(str, target.numbers))] if target.numbers else []
+    words += written(target, PLACE)
     words += [_position(target.place)] if target.place else []
     words += [f"but({_place(target.but)})"] if target.but else []
     return " ".join(words)
@@ -215,40 +219,16 @@ TOKEN = re.compile(r"\s*(?:(half[12]|[a-z_]+)|(-?\d+(?:\.\d+)?)|(\.\.|[;:,()=+%-
 SPACES = re.compile(r" (?=[(),=])|(?<=[(=]) ")
 """Spaces between tokens that are removed from the text of a place."""
 KINDS = frozenset(get_args(Kind)) - {"straight", "turn"}
-NOUNS = ("turn", "straight", "start", "end", "road")
-OF_TURNS: dict[str, tuple[str, Any]] = {
-    **{word: ("side", word) for word in get_args(Side)},
-    **{word: ("sharpness", word) for word in get_args(Sharpness)},
-}
-"""Words that describe turns, each with the field that it sets and its value."""
-OF_TARGETS = {
-    **OF_TURNS,
-    **{word: ("way", word) for word in get_args(Way)},
-    **{word: ("size", word) for word in ("long", "short")},
-    **{word: ("most", most) for word, most in SUPERLATIVES.items()},
-    **{word: ("half", half) for word, half in HALVES.items()},
-    "all": ("every", True),
-    "middle": ("middle", True),
-}
-"""Words that describe places, each with the field that it sets and its value."""
-OF_NEW = {**OF_TURNS, "whole": ("is_whole", True)}
-"""Words that describe what is added, each with the field that it sets and its value."""
-NUMBERS = {"deg": "degrees", "len": "length", "r": "radius", "pct": "grade"}
-NEXT_TO = ("after", "before", "between", "on")
-"""Positions, relative to other elements, at which a new element can be added."""
-POSITIONS = (*NEXT_TO, "from", "up_to")
-ENDS: dict[str, Literal["start", "end", "middle"]] = {
-    "at_start": "start",
-    "at_end": "end",
-    "at_middle": "middle",
-}
-MEASURES = ("angle", "radius", "length", "slope", "climb")
-MOVES = ("after", "before", "between", *ENDS)
-"""Positions to which a turn can be moved."""
+NOUNS, ENDS = named_in("nouns"), cast("Mapping[str, Literal['start', 'end', 'middle']]", ROADS["ends"])
+PLACE, NEW = language(PARTS["place"]), language(PARTS["new"])
+POSITIONS: Mapping[str, Mapping[str, bool]] = ROADS["positions"]
+NEXT_TO, MOVES = ([name for name in POSITIONS if POSITIONS[name].get(how)] for how in ("new", "moved"))
+"""Where an element can be added, relative to others, and where a turn can be moved."""
+MEASURES = named_in("measures")
 ALONE = ("straighten", "remove", "mirror", "reverse", "swap", "alternate")
 OF_ROAD = ("mirror", "reverse")
 """Changes that can concern the whole road."""
-WAYS = (*get_args(Way), *(f"{how}_{way}" for how in get_args(Steepness) for way in ("up", "down")))
+WAYS = PARTS["new"]["slope"].words
 DOSES = {"slightly": SLIGHTLY, "much": MUCH}
 PAGE = "the page 'Plans' of the reference describes the language"
 
@@ -288,7 +268,7 @@ class ChangeParser:
         what = self._word()
         if what == "x":
             return self._counted(Change("count", target))
-        if what in MOVES:
+        if what in (*MOVES, *ENDS):
             return Change("move", target, place=self._position(what))
         if what in ALONE:
             if what == "reverse" and target != Target("road", words="road"):
@@ -393,21 +373,19 @@ class ChangeParser:
                 self._set(fields, "way", way)
                 fields["steepness"] = steepness or None
             else:
-                self._set(fields, *self._described(OF_NEW, NUMBERS, NEXT_TO))
+                self._set(fields, *self._described(NEW, NEXT_TO))
         return Change("add", Target(noun, words=kind), kind=own, **fields)
 
-    def _described(
-        self, fixed: Mapping[str, tuple[str, Any]], keys: Container[str], places: Container[str]
-    ) -> tuple[str, Any]:
+    def _described(self, has: Language, places: Container[str]) -> tuple[str, Any]:
         """Returns the field that the next word sets, and its value, which may stand behind the word."""
         word = self._word()
-        if word in fixed:
-            return fixed[word]
-        if word == "x":
+        if word in has.words:
+            return has.words[word]
+        if word == COUNTED:
             return "count", self._whole()
-        if word in keys:
+        if word in has.keys:
             self._need("=")
-            return NUMBERS[word], self._figure()
+            return has.keys[word][0], self._figure()
         if word in places or word in ENDS:
             return "place", self._position(word)
         raise self._error(word)
@@ -438,7 +416,7 @@ class ChangeParser:
                 self._set(fields, "but", self._target())
                 self._need(")")
             else:
-                self._set(fields, *self._described(OF_TARGETS, ("deg", "len"), POSITIONS))
+                self._set(fields, *self._described(PLACE, POSITIONS))
         words = SPACES.sub("", " ".join(self.tokens[begun : self.at]))
         return Target(cast(Any, "turn" if noun in KINDS else noun), words=words, **fields)
 

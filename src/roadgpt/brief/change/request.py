@@ -31,16 +31,6 @@ Steepness = Literal["gently", "steeply"]
 Measure = Literal["sharp", "long", "steep"]
 SLIGHTLY, MUCH = 0.5, 1.8
 """Sizes of a change ('slightly', 'much') for which no number is given, relative to the usual size."""
-SUPERLATIVES: dict[str, tuple[Measure, int]] = {
-    "longest": ("long", 1),
-    "shortest": ("long", -1),
-    "sharpest": ("sharp", 1),
-    "gentlest": ("sharp", -1),
-    "steepest": ("steep", 1),
-    "flattest": ("steep", -1),
-}
-"""The superlatives, each with its measure and 1 for the largest value or -1 for the smallest."""
-HALVES = {"half1": 1, "half2": 2}
 OF_SLOPE: frozenset[What] = frozenset({"slope", "climb"})
 REORDERS: tuple[What, ...] = ("swap", "move")
 """Changes that put turns or straights in another order."""

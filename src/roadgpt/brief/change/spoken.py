@@ -3,10 +3,12 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from roadgpt.brief.change.request import SUPERLATIVES, Change, EditRequest, Place, Target
+from roadgpt.brief.change.request import Change, EditRequest, Place, Target
+from roadgpt.language.table import PARTS, ROADS
 
 ORDINALS = ("", "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
-UNITS = {"angle": " degrees", "radius": " m", "length": " m", "slope": " %", "climb": " m"}
+UNITS = {"degrees": " degrees", "metres": " m", "percent": " %"}
+SUPERLATIVES = PARTS["place"]["most"].words
 PLACES = {"start": "at the start", "end": "at the end", "middle": "in the middle"}
 HOW = {"up_to": "up to", "from": "from"}
 WAYS = {"up": "uphill", "down": "downhill", "flat": "level"}
@@ -57,7 +59,8 @@ def of_change(change: Change) -> str:
 
 
 def _value(change: Change) -> str:
-    unit, other = UNITS[change.what], f"that of {of_target(change.like)}" if change.like else ""
+    unit = UNITS[ROADS["measures"][change.what]]
+    other = f"that of {of_target(change.like)}" if change.like else ""
     if change.times is not None:
         return f"{change.times:g} times {other}".rstrip() if other else f"times {change.times:g}"
     if change.by is not None:

@@ -1,7 +1,7 @@
 """Grammars of tokens: which tokens may come next, and what follows each token.
 
-Behind a road, a route or a map stand ``:`` with the wishes for it that a text tells among its story (its kind,
-its design speed, where one comes from), and ``&&`` with the scene:
+Behind a road, a route or a map stand ``:`` with the wishes for it that a text tells among its story (its
+kind, its design speed, where one comes from), and ``&&`` with the scene:
 
     | lanes= 1 against= 1 : country from= south speed= [2] && ego v= [1] ; truck ahead : brake ; night
 
@@ -9,7 +9,7 @@ A grammar is built of symbols by the functions below. No two alternatives of a s
 token, so the next token decides between them (LL(1)). The state of an unfinished text is a stack of symbols.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from math import inf
@@ -61,6 +61,7 @@ from roadgpt.language.names import (
     Where,
 )
 from roadgpt.language.table import (
+    COUNTED,
     CUES,
     FLOWS,
     LANDFORMS,
@@ -322,7 +323,7 @@ def description(numbers: Numbers) -> Symbol:
     apart = {name: sequel(one_of(f"{name}("), clause, one_of(")")) for name in ("starts", "ends")}
     apart |= {"beside": _beside(), "speed": numbers.design_speed()}
     apart["length"] = any_of(one_of(HALFWAY), numbers.keyed("len="))
-    whole = sequel(one_of("|"), in_order(*_parts("road", numbers, **apart), least=1))
+    whole = sequel(one_of("|"), in_order(*_parts("road", numbers, apart), least=1))
     clauses = sequel(clause, list_tail(";", clause, MOST_CLAUSES - 1), replace(whole, may_be_empty=True))
     return any_of(_route(any_of(whole, clauses), numbers), _map(numbers))
 
@@ -334,10 +335,10 @@ def _beside() -> Symbol:
 
 
 def _parts(
-    thing: str, numbers: Numbers, names: Iterable[str] | None = None, **apart: Symbol
+    thing: str, numbers: Numbers, apart: Mapping[str, Symbol], names: Iterable[str] | None = None
 ) -> Iterator[Symbol]:
-    """Yields the symbols for what a clause, road, junction or map can have, by the names of fields; ``apart``
-    has those that are no flags, words and numbers."""
+    """Yields the symbols for what a thing can have, by the names of fields; ``apart`` has those that are not
+    only words and numbers."""
     parts = PARTS[thing]
     for name in parts if names is None else names:
         part = parts[name]
@@ -348,13 +349,13 @@ def _parts(
         elif part.words:
             words = one_of(*(LISTED_WAYS if part.list else ()), *part.words)
             yield sequel(one_of(f"{part.key}="), words) if part.key else words
-        elif part.key:
+        elif part.key == COUNTED:
+            yield numbers.keyed(COUNTED)
+        else:
             keyed = numbers.keyed(f"{part.key}=", is_signed=(thing, name) == ("road", "climb"))
             zero = [one_of(part.zero)] if part.zero else []
             double = [numbers.keyed(f"{part.double}=")] if part.double else []
             yield any_of(*zero, keyed, *double)
-        else:
-            yield one_of(name)
 
 
 def _route(road: Symbol, numbers: Numbers) -> Symbol:
@@ -385,7 +386,7 @@ def _junction(numbers: Numbers) -> Symbol:
     def of(form: str, names: Iterable[str]) -> Symbol:
         kinds = [kind for kind in get_args(JunctionKind) if FORMS[kind] == form]
         takes = (take for take in get_args(Take) if any(take in TAKES[kind] for kind in kinds))
-        return sequel(one_of(*kinds), in_order(*_parts("junction", numbers, names, take=one_of(*takes))))
+        return sequel(one_of(*kinds), in_order(*_parts("junction", numbers, {"take": one_of(*takes)}, names)))
 
     return any_of(*(of(form, names) for form, names in ROADS["forms"].items()))
 
@@ -410,7 +411,7 @@ def _ways(most: int) -> Symbol:
 def _clause(numbers: Numbers) -> Symbol:
     def of(what: str, kinds: Iterable[str]) -> Symbol:
         names = [name for name, part in PARTS["clause"].items() if part.of in ("", what)]
-        return sequel(one_of(*kinds), in_order(numbers.keyed("x"), *_parts("clause", numbers, names)))
+        return sequel(one_of(*kinds), in_order(*_parts("clause", numbers, {}, names)))
 
     straight = [kind for kind in KINDS if kind in STRAIGHT]
     return any_of(of("straights", straight), of("turns", [kind for kind in KINDS if kind not in straight]))
@@ -420,15 +421,8 @@ MOST_CHANGES = 8
 MOST_NUMBERS = 8
 DEEPEST = 2
 """How deeply places in a change may be nested: "all but (the straight after (the first turn))" is depth 2."""
-WAYS = ("up", "down", "flat")
-STEEPNESS = ("gently_up", "gently_down", "steeply_up", "steeply_down")
-SUPERLATIVES = ("longest", "shortest", "sharpest", "gentlest", "steepest", "flattest")
 LESS = one_of("more", "less")
 MORE_OR_LESS = (sequel(one_of("slightly", "much"), LESS), LESS)
-NEXT_TO = ("after(", "before(", "between(", "on(")
-"""The positions of a feature that a change adds, relative to a place on the road."""
-MOVES = NEXT_TO[:3]
-"""Positions, relative to other places, to which a turn can be moved."""
 
 
 def change_request(numbers: Numbers) -> Symbol:
@@ -441,31 +435,25 @@ def change_request(numbers: Numbers) -> Symbol:
 def _place(numbers: Numbers, depth: int) -> Symbol:
     far = one_of(*COUNTS[1:13])
     number = any_of(one_of(*COUNTS[1:]), sequel(one_of(MINUS), far))
-    parts = [
-        *(number for _ in range(MOST_NUMBERS)),
-        one_of("all"),
-        one_of("middle"),
-        one_of(*SUPERLATIVES),
-        sequel(one_of("x"), far),
-        one_of(*SIDES),
-        SHARPNESS,
-        one_of(*WAYS),
-        SIZES,
-        *(_exactly(key, numbers) for key in ("deg=", "len=")),
-        one_of("half1", "half2"),
-    ]
+    parts = [*(number for _ in range(MOST_NUMBERS)), *_described("place", numbers, COUNTS[1:13])]
     if depth:
         inner = later(lambda: _place(numbers, depth - 1))
-        parts += [_position(inner, (*NEXT_TO, "from(", "up_to(")), sequel(one_of("but("), inner, one_of(")"))]
+        parts += [_position(inner, ""), sequel(one_of("but("), inner, one_of(")"))]
     return sequel(one_of(*dict.fromkeys([*NOUNS, *KINDS])), in_order(*parts))
 
 
-def _position(inner: Symbol, ways: Sequence[str]) -> Symbol:
-    close = one_of(")")
-    single = (way for way in ways if way != "between(")
+def _described(thing: str, numbers: Numbers, counts: Sequence[str]) -> Iterator[Symbol]:
+    keys = {name: f"{part.key}=" for name, part in PARTS[thing].items() if part.key}
+    apart = {name: _exactly(key, numbers) for name, key in keys.items()}
+    return _parts(thing, numbers, apart | {"count": sequel(one_of(COUNTED), one_of(*counts))})
+
+
+def _position(inner: Symbol, how: str) -> Symbol:
+    """Returns the symbol for a position; ``how`` are those of a part that is new or moved, or else all."""
+    close, ways = one_of(")"), [way for way, row in ROADS["positions"].items() if not how or row.get(how)]
     return any_of(
-        one_of("at_start", "at_end", "at_middle"),
-        sequel(one_of(*single), inner, close),
+        one_of(*ROADS["ends"]),
+        sequel(one_of(*(f"{way}(" for way in ways if way != "between")), inner, close),
         sequel(one_of("between("), inner, one_of(","), inner, close),
     )
 
@@ -481,7 +469,8 @@ def _wish(numbers: Numbers) -> Symbol:
     like = _place(numbers, DEEPEST - 1)
     values = {name: _value(name, numbers, like) for name in MEASURED if name != "climb"}
     slope = values["slope"]
-    values["slope"] = any_of(sequel(one_of("up", "down"), in_order(slope)), one_of("flat", *STEEPNESS), slope)
+    level = [way for way in PARTS["new"]["slope"].words if way not in ("up", "down")]
+    values["slope"] = any_of(sequel(one_of("up", "down"), in_order(slope)), one_of(*level), slope)
     shape = in_order(one_of(*(kind for kind in KINDS if kind not in NOUNS)), SHARPNESS, least=1)
     whole = (number for number in numbers.of("x") if value_of(number, numbers.slots) in range(1, 1000))
     count = one_of(*whole)
@@ -490,7 +479,7 @@ def _wish(numbers: Numbers) -> Symbol:
         *(sequel(one_of(name), value) for name, value in values.items()),
         sequel(one_of("climb"), _climb(numbers)),
         sequel(one_of("x"), counted),
-        _position(like, MOVES),
+        _position(like, "moved"),
         sequel(one_of("side"), one_of(*SIDES, "other")),
         sequel(one_of("shape"), shape),
         one_of("straighten", "remove", "mirror", "alternate"),
@@ -534,16 +523,8 @@ def factors(numbers: Numbers) -> list[Symbol]:
 
 
 def _new(numbers: Numbers) -> Symbol:
-    parts = (
-        sequel(one_of("x"), one_of(*COUNTS[1:])),
-        one_of(*SIDES),
-        SHARPNESS,
-        one_of(*WAYS, *STEEPNESS),
-        *(_exactly(key, numbers) for key in ("deg=", "len=", "r=", "pct=")),
-        one_of("whole"),
-        _position(_place(numbers, DEEPEST - 1), NEXT_TO),
-    )
-    return sequel(one_of(*KINDS), in_order(*parts))
+    position = _position(_place(numbers, DEEPEST - 1), "new")
+    return sequel(one_of(*KINDS), in_order(*_described("new", numbers, COUNTS[1:]), position))
 
 
 ACTORS, WHATS, AIRS = written(ROAD_USERS), cast("list[What]", written(MANEUVERS)), written(WEATHER)

@@ -13,7 +13,7 @@ from roadgpt.brief.languages import pattern_of
 from roadgpt.brief.plan import SCENE
 from roadgpt.brief.readers.model.slots import LARGEST_SEEN, SLOTS, NumberSlot
 from roadgpt.language.names import Kind, Slope
-from roadgpt.language.table import MANEUVERS, PARTS, WEATHER
+from roadgpt.language.table import MANEUVERS, PARTS, ROADS, WEATHER, named_in
 from roadgpt.language.table import NUMBERS as NUMBERS_OF_SCENES
 from roadgpt.reading import read_text
 
@@ -102,8 +102,7 @@ WISHES = ":"
 RAINS = {"drizzle": "rain ..2.5", "downpour": "rain 7.6.."}
 """Tokens of rains that words tell without a number, with what stands in plans."""
 SLOT_TOKENS = [f"[{index + 1}]" for index in range(SLOTS)]
-NOUNS = ["turn", "straight", "start", "end", "road"]
-MEASURED = {"angle": "degrees", "radius": "metres", "length": "metres", "slope": "percent", "climb": "metres"}
+NOUNS, MEASURED = named_in("nouns"), ROADS["measures"]
 """The properties to which a change can give a value, with the unit of the value."""
 ORDER = "order"
 """The token for "swap", and of the whole road for "reverse"; weights know it as a cause of refusals, too."""
