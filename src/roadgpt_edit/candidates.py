@@ -21,8 +21,7 @@ from itertools import islice, pairwise, product, takewhile
 from math import atan2, cos, degrees, hypot, inf, pi, radians, sin
 from typing import Any, NamedTuple
 
-from roadgpt.brief.change.clashes import clash
-from roadgpt.brief.change.request import NUMBERING, Change, What
+from roadgpt.brief.change.request import NUMBERING, Change, What, clash
 from roadgpt.brief.map_fit import ROUND_MAP
 from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature

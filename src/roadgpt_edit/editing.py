@@ -29,9 +29,17 @@ import numpy as np
 
 from roadgpt.brief.beside import friction_of
 from roadgpt.brief.change import EditRequest, checked_request, other_readings, read_request
-from roadgpt.brief.change.clashes import clash
 from roadgpt.brief.change.plan import read_change_plan
-from roadgpt.brief.change.request import NUMBERING, OF_SLOPE, REORDERS, Change, SceneChange, Target, What
+from roadgpt.brief.change.request import (
+    NUMBERING,
+    OF_SLOPE,
+    REORDERS,
+    Change,
+    SceneChange,
+    Target,
+    What,
+    clash,
+)
 from roadgpt.brief.change.staging import changed_scene
 from roadgpt.brief.readers.model.trained import DOUBT
 from roadgpt.brief.scene import land_remark, parts_said, scene_text

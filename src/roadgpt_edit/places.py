@@ -10,8 +10,7 @@ from itertools import compress
 from math import ceil, degrees, floor, radians
 from typing import NamedTuple
 
-from roadgpt.brief.change.clashes import clash
-from roadgpt.brief.change.request import OF_SLOPE, Change, Place, Target, Way, What
+from roadgpt.brief.change.request import OF_SLOPE, Change, Place, Target, Way, What, clash
 from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import way
 from roadgpt.errors import EditError, IdleEditError, UnclearPlaceError

@@ -12,7 +12,7 @@ from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, Clause, exactly, span
 from roadgpt.brief.normal import BUMPS, SINGLE, STRAIGHT, clauses_turn, normal, total, turns_of
 from roadgpt.brief.outline import outline, slopes_of_bump
 from roadgpt.brief.ranges import Range, overlap
-from roadgpt.brief.scene_check import check_scene
+from roadgpt.brief.scene_places import check_scene
 from roadgpt.brief.sentence import clause_text, road_words
 from roadgpt.brief.words import (
     COUNTS,

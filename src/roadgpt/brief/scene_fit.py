@@ -17,9 +17,7 @@ from roadgpt.brief.normal import STRAIGHT
 from roadgpt.brief.outline import outline
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.scene import HEAD_ON, LEAVES, MOST_MORE, Action, Role, Scene
-from roadgpt.brief.scene_check import check_scene
-from roadgpt.brief.scene_junctions import comes_to_junction
-from roadgpt.brief.scene_places import with_places
+from roadgpt.brief.scene_places import check_scene, comes_to_junction, with_places
 from roadgpt.brief.words import MOTORWAY_RADIUS
 from roadgpt.errors import BriefError
 from roadgpt.language.table import ACROSS, MOVING, SIZES, USUAL_SPEEDS

@@ -11,9 +11,8 @@ from dataclasses import replace
 from functools import cache
 
 from roadgpt.brief.beside import slipperiest
-from roadgpt.brief.change.clashes import refuse_clashes
 from roadgpt.brief.change.plan import change_plan, read_change_plan
-from roadgpt.brief.change.request import EditRequest
+from roadgpt.brief.change.request import EditRequest, refuse_clashes
 from roadgpt.brief.change.spoken import spoken
 from roadgpt.brief.languages import pattern_of
 from roadgpt.brief.plan import SCENE

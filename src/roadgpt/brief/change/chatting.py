@@ -8,9 +8,8 @@ from pathlib import Path
 
 from pydantic import BaseModel, Field
 
-from roadgpt.brief.change.clashes import refuse_clashes
 from roadgpt.brief.change.plan import read_change_plan
-from roadgpt.brief.change.request import EditRequest
+from roadgpt.brief.change.request import EditRequest, refuse_clashes
 from roadgpt.brief.change.spoken import spoken
 from roadgpt.brief.plan import SCENE
 from roadgpt.brief.readers.chat import MOST_PLAN, OTHERS, opening_of, said_in, told_in, until_valid

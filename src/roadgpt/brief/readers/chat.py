@@ -14,7 +14,7 @@ from typing import TypeVar
 from pydantic import BaseModel, Field
 
 from roadgpt.brief.feasible import check
-from roadgpt.brief.junctions import MAP, NAMES
+from roadgpt.brief.junctions import MAP
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import BETWEEN, JUNCTIONS, KINDS, SCENE, WHOLE, is_junction, is_map, read_plan
@@ -29,6 +29,7 @@ from roadgpt.language.table import (
     NUMBERS,
     PLACES,
     ROAD_USERS,
+    ROADS,
     SURFACES,
     WEATHER,
     Maneuver,
@@ -87,17 +88,10 @@ ON_LINES = (
 
 # Words that models write instead of those of the plan language, in spite of the rules.
 SAID = {
-    **dict.fromkeys(("uphill", "climbing", "ascending"), "up"),
-    **dict.fromkeys(("downhill", "descending", "falling"), "down"),
-    **dict.fromkeys(("level",), "flat"),
-    **dict.fromkeys(("turns", "bend", "bends", "curve", "curves"), "turn"),
-    "s-bend": "s_bend",
-    "u-turn": "u_turn",
-    "zig-zag": "zigzag",
-    "hairpins": "hairpin",
-    **{name.lower().replace(" ", "_"): kind for kind, names in NAMES.items() for name in names},
-    **dict.fromkeys(("traffic_light", "traffic_lights"), "lights"),
-    "give_way": "yield",
+    name.lower().replace(" ", "_"): kind
+    for part in ("features", "slopes", "junctions", "controls")
+    for kind, row in ROADS[part].items()
+    for name in (*row["names"], *row.get("also", ()))
 }
 SAID_OF_OTHERS = {
     one.lower(): str(kind)

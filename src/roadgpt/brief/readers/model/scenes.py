@@ -7,12 +7,13 @@ from itertools import pairwise
 from typing import Any, get_args
 
 from roadgpt.brief.amount import exactly
+from roadgpt.brief.beside import TEXTS
 from roadgpt.brief.expressions import says_left_hand
 from roadgpt.brief.feasible import is_possible
 from roadgpt.brief.languages import TABLE, pattern_of, word_set
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
-from roadgpt.brief.plan import SCENE, read_plan
+from roadgpt.brief.plan import SCENE, read_plan, read_scene
 from roadgpt.brief.readers.model.before import SIGHT, without_asides
 from roadgpt.brief.readers.model.clock import told_time
 from roadgpt.brief.readers.model.number_words import plain
@@ -51,45 +52,13 @@ OF_SCENES = word_set("of_scenes").union(*NAMES.values())
 """The words by which a text may be about a scene."""
 BEHIND = frozenset(["stop", "stops", "lane", "lanes", "bay", "bays", "shelter", "crossing"])
 """Words before which "bus", "bicycle" or "pedestrian" names a thing beside the road."""
-NAMED: Mapping[str, Scene] = {
-    "night": Scene(light="night"),
-    "wet": Scene(surface="wet"),
-    "snow": Scene(surface="snow"),
-    "snowfall": Scene(surface="snow"),
-    "ice": Scene(surface="ice"),
-    "bridge": Scene(landscape=(Land(kind="bridge"),)),
-    "tunnel": Scene(landscape=(Land(kind="tunnel"),)),
-}
-"""What some of the names that a network gives beside a road are as a scene. How dense traffic is, they do not
-tell."""
+NAMED: Mapping[str, Scene] = {name: read_scene(scene) for name, scene in TEXTS["scenes"].items()}
+"""What some of the names that a network gives beside a road are as a scene."""
 COMPASS: tuple[Compass, ...] = get_args(Compass)
 BOUND_BRIEFLY = {f"{way[0]}b": way for way in COMPASS[::2]}
 """What "NB" and the like say of the direction in which somebody goes."""
 GOING = ("heading", "going", "driving", "travelling", "traveling", "proceeding", "moving")
-AS_SCENE: Mapping[str, tuple[str, ...]] = {
-    "traffic": ("flow", "oncoming"),
-    "pedestrian": ("adult", "child"),
-    "cyclist": ("bicycle",),
-    "animal": ("animal",),
-    "obstacle": ("cones", "barrier", "lost_load"),
-    "rain": ("rain", "wet"),
-    "fog": ("fog",),
-    "snowfall": ("snow",),
-    "night": ("night",),
-    "sun": ("low_sun",),
-    "wet": ("wet",),
-    "snow": ("snow",),
-    "ice": ("ice",),
-    "bridge": ("bridge",),
-    "tunnel": ("tunnel",),
-    "trees": ("forest", "tree_lined"),
-    "buildings": ("town",),
-    "water": ("lake", "river", "coast"),
-    "landscape": ("valley", "ridge"),
-    "parking": ("parked",),
-    "speed": ("speed",),
-    "place": ("place", "town"),
-}
+AS_SCENE: Mapping[str, list[str]] = {name: things.split() for name, things in TEXTS["as_scenes"].items()}
 """What a network names beside the road, with what a scene has instead."""
 
 
