@@ -8,12 +8,18 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from roadgpt.brief.readers.model.scene_grammar import any_change
 
 from random_plans import random_plan
 from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.brief.readers.model.grammar import END, Numbers, PlanAutomaton, Symbol, change_request
+from roadgpt.brief.readers.model.grammar import (
+    END,
+    Numbers,
+    PlanAutomaton,
+    Symbol,
+    any_change,
+    change_request,
+)
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, change_of, plan_of
 from roadgpt.brief.refusal import refused
