@@ -9,11 +9,13 @@ import numpy as np
 from roadgpt.brief.scene import HEAD_ON, LEAVES, MOST_MORE
 from roadgpt.language.table import MANEUVERS
 from roadgpt.road.road import START
-from roadgpt.traffic.acting import BEHIND, INTO, ONCOMING, STANDS, Act, Car
 from roadgpt.traffic.actor import HEADING, SIZES, STILL, Actor, FloatArray, TestedCar, corners
 from roadgpt.traffic.boxes import touch
+from roadgpt.traffic.course import Met
 from roadgpt.traffic.following import ALONG
+from roadgpt.traffic.performer import Performer
 from roadgpt.traffic.places import parked_rows
+from roadgpt.traffic.placing import BEHIND, INTO, ONCOMING, STANDS, Placing
 from roadgpt.traffic.traffic import LATE, NEVER, Stage
 from roadgpt.traffic.way import SPACING, Way
 
@@ -30,11 +32,11 @@ class Script:
         Raises SceneError if something of the scene cannot be on this road."""
         self._stage, self._way = stage, Way.along(stage.road, stage.world)
         first = self._way.from_road(min(START, stage.road.length / 2))
-        self._acts = self._placed(Car(first, stage.world.first_speed, *SIZES["car"][:2]))
-        free = [act.way.points for act in self._acts if act.way is not self._way]
-        free += [corners(np.array(state), act.size) for act in self._acts if (state := act.state())]
+        self._performers = self._placed(Met(first, stage.world.first_speed, *SIZES["car"][:2]))
+        free = [each.course.way.points for each in self._performers if each.course.way is not self._way]
+        free += [corners(np.array(at), each.size) for each in self._performers if (at := each.state())]
         rows = parked_rows(stage.world.scene, stage.road, stage.world, stage.seed, free)
-        kinds = [*(act.kind for act in self._acts), *(kind for kind, _ in rows)]
+        kinds = [*(each.role.kind for each in self._performers), *(kind for kind, _ in rows)]
         self.actors = [
             Actor(f"{kind} {kinds[: n + 1].count(kind)}", kind, SIZES[kind]) for n, kind in enumerate(kinds)
         ]
@@ -43,70 +45,81 @@ class Script:
         self.happened: dict[str, float] = {}
         """What of the scene has begun, in words, and at which station of its road the tested car was then."""
 
-    def _placed(self, car: Car) -> list[Act]:
-        """Returns the acts of everybody, as seen from the tested car."""
-        found, events, kinds = list[Act](), dict[tuple[str, ...], float](), Counter[str]()
+    def _placed(self, met: Met) -> list[Performer]:
+        """Returns everybody where they are at first, as seen from the tested car."""
+        found, events, kinds = list[Performer](), dict[tuple[str, ...], float](), Counter[str]()
         for number, role in enumerate(self._stage.world.scene.actors):
             kinds[role.kind] += 1
-            name, alike = (role.kind, str(kinds[role.kind])), list[Act]()
+            name, alike = (role.kind, str(kinds[role.kind])), list[Placing]()
             low = int(role.count.lo or 1)
             high = int(role.count.hi or low + MOST_MORE)
             for copy in range(np.random.default_rng([self._stage.seed, number]).integers(low, high + 1)):
                 rng = np.random.default_rng([self._stage.seed, number, copy])
-                alike.append(Act(self._stage, self._way, role, car, rng, events, name, alike))
-            found += alike
-        self._order(found)
+                alike.append(Placing(self._stage, self._way, role, met, rng, alike, events))
+            found += [Performer(each, None if each.copy else name) for each in alike]
+        self._order([each.placed for each in found])
         return found
 
-    def _order(self, acts: list[Act]) -> None:
+    def _order(self, everybody: list[Placing]) -> None:
         """Puts those ahead in the tested car's lane behind one another where the scene leaves open where they
         are: who stands beyond whom, and who drives beyond those who stand. Who stands behind somebody that
         leaves the lane is as far from it, where that happens, as the scene says."""
-        ahead = [act for act in acts if act.where == "ahead" and act.is_along and not act.role.at]
-        leavers = [act for act in ahead if act.first in LEAVES and act.v > 0]
-        last: Act | None = None
-        for act in ahead:
-            if act.v == 0 and "station" not in act.n and "lead" not in act.n:
-                if leavers and act.copy == 0:
-                    gap = act.n.get("gap", UNCOVERED * leavers[0].v)
-                    act.put(max(act.s, leavers[0].begins + gap + act.between(leavers[0])))
-                elif last and (act.copy or not act.is_placed):
-                    act.put(max(act.s, last.s + act.between(last) + STANDS))
-                last = act
+        ahead = [
+            each
+            for each in everybody
+            if each.role.where == "ahead" and each.course.is_along and not each.role.at
+        ]
+        leavers = [each for each in ahead if each.first in LEAVES and each.longitudinal.v > 0]
+        last: Placing | None = None
+        for each in ahead:
+            if each.longitudinal.v == 0 and "station" not in each.n and "lead" not in each.n:
+                if leavers and each.copy == 0:
+                    gap = each.n.get("gap", UNCOVERED * leavers[0].longitudinal.v)
+                    each.put(max(each.course.s, leavers[0].begins + gap + each.between(leavers[0])))
+                elif last and (each.copy or not each.is_placed):
+                    each.put(max(each.course.s, last.course.s + each.between(last) + STANDS))
+                last = each
         for leaver in leavers:
-            for act in ahead:
-                wide = (act.size.width + leaver.size.width) / 2
-                if act.v == 0 and leaver.begins < act.s and abs(act.t - leaver.t) < wide:
-                    leaver.leave(act)
-        for act in ahead:
-            if last and act.v > 0 and act.first not in LEAVES and not act.is_placed and act.s < last.s:
-                act.put(last.s + act.between(last) + BEHIND * act.v)
-        onto = [act for act in acts if act.forward < 0 and act.is_along and not act.is_placed]
-        late = [act.s + act.size.length / 2 - self._way.length for act in onto if act.first in HEAD_ON]
-        spare = min((act.s - act.car.s - act.half - ONCOMING for act in onto), default=0.0)
+            for each in ahead:
+                wide, apart = (each.size.width + leaver.size.width) / 2, each.lateral.t - leaver.lateral.t
+                if each.longitudinal.v == 0 and leaver.begins < each.course.s and abs(apart) < wide:
+                    leaver.leave(each)
+        for each in ahead:
+            v, is_open = each.longitudinal.v, each.first not in LEAVES and not each.is_placed
+            if last and v > 0 and is_open and each.course.s < last.course.s:
+                each.put(last.course.s + each.between(last) + BEHIND * v)
+        onto = [
+            each
+            for each in everybody
+            if each.course.forward < 0 and each.course.is_along and not each.is_placed
+        ]
+        late = [
+            each.course.s + each.size.length / 2 - self._way.length for each in onto if each.first in HEAD_ON
+        ]
+        spare = min((each.course.s - each.met.s - each.half - ONCOMING for each in onto), default=0.0)
         nearer = min(max(late, default=0.0), spare)
-        for act in onto if nearer > 0 else ():  # so that what they begin happens on a short road, too
-            act.put(act.s - nearer)
-        placed = list[Act]()
-        for act in sorted(acts, key=lambda each: not each.is_placed):
-            while inside := next((each for each in placed if _touch(act, each)), None):
-                act.part(inside)
-            while near := next((each for each in placed if not act.is_placed and act.runs_into(each)), None):
-                act.part(near)
-            placed.append(act)
-        for act in acts:
-            act.check()
+        for each in onto if nearer > 0 else ():  # so that what they begin happens on a short road, too
+            each.put(each.course.s - nearer)
+        placed = list[Placing]()
+        for each in sorted(everybody, key=lambda one: not one.is_placed):
+            while inside := next((other for other in placed if each.touches(other)), None):
+                each.part(inside)
+            while near := next((o for o in placed if not each.is_placed and each.runs_into(o)), None):
+                each.part(near)
+            placed.append(each)
+        for each in everybody:
+            each.check()
 
-    def _seen(self, car: TestedCar) -> Car:
+    def _seen(self, car: TestedCar) -> Met:
         s = self._way.from_road(car.s)
         x, y, _, heading = self._way.pose(s)
         s += (car.x - x) * math.cos(heading) + (car.y - y) * math.sin(heading)
-        return Car(s, car.speed, car.length, car.width)
+        return Met(s, car.speed, car.length, car.width)
 
     def start(self, car: TestedCar, bodies: FloatArray) -> FloatArray:
         """Places everybody as seen from the tested car."""
         del bodies
-        self._acts = self._placed(self._seen(car))
+        self._performers = self._placed(self._seen(car))
         return self._states()
 
     def move(self, time: float, car: TestedCar, bodies: FloatArray) -> FloatArray:
@@ -114,12 +127,12 @@ class Script:
         lane, but not for the tested car, unless they overtake it. Who hits it from behind stops there."""
         seen = self._seen(car)
         self._look(bodies, car)
-        for act in self._acts:
-            _meet(act, car)
-            act.move(time, seen)
-        for actor, act in zip(self.actors, self._acts, strict=False):
+        for each in self._performers:
+            _touch(each, car)
+            each.move(time, seen)
+        for actor, each in zip(self.actors, self._performers, strict=False):
             self.happened |= {
-                did: car.s for n in act.shown if (did := _did(actor, act, n)) not in self.happened
+                did: car.s for n in each.shown if (did := _did(actor, each, n)) not in self.happened
             }
         return self._states()
 
@@ -128,86 +141,82 @@ class Script:
         comes onto its way before it is there is seen by those who stand later in the scene."""
         own = (car.x, car.y, 0.0, car.heading, car.speed, car.length, car.width)
         rows = np.vstack([np.hstack([self._states(), self._sizes]), bodies, own])
-        seen = {act.way: act.way.boxes(rows) for act in self._acts if act.v != 0}
-        for number, act in enumerate(self._acts):
-            act.ahead = None
-            if act.v == 0:
+        ways = {each.course.way for each in self._performers if each.longitudinal.v != 0}
+        seen = {way: way.boxes(rows) for way in ways}
+        for number, each in enumerate(self._performers):
+            v, lateral, course = each.longitudinal.v, each.lateral, each.course
+            each.longitudinal.ahead = None
+            if v == 0:
                 continue
-            along, left, half, wide, speed, aside = seen[act.way]
-            ahead = math.copysign(act.forward, act.forward * act.v)
-            apart = ahead * (along - act.s)
-            gap = apart - half - act.size.length / 2
-            gap[-1] -= INTO * abs(act.v) * (act.where != "behind")  # the headway with which it follows
-            later = left + aside * np.maximum(gap, 0.0) / abs(act.v)
+            along, left, half, wide, speed, aside = seen[course.way]
+            ahead = math.copysign(course.forward, course.forward * v)
+            apart = ahead * (along - course.s)
+            gap = apart - half - each.size.length / 2
+            gap[-1] -= INTO * abs(v) * (each.role.where != "behind")  # the headway with which it follows
+            later = left + aside * np.maximum(gap, 0.0) / abs(v)
             later[number:] = left[number:]
-            sides = [act.t] if act.slide is None else [act.t, act.slide.begin + act.slide.by]
-            near = np.min([np.abs(each - side) for each in (left, later) for side in sides], axis=0)
-            if act.uncovers and (not act.begun or act.slide):
-                to = np.abs(left - sides[-1]) if act.slide else np.inf
+            near = np.min([np.abs(to - t) for to in (left, later) for t in (lateral.t, lateral.end)], axis=0)
+            if each.placed.uncovers and (not each.begun or lateral.slide):
+                to = np.abs(left - lateral.end) if lateral.slide else np.inf
                 near = np.where(np.abs(speed) < STILL, to, near)
-            is_ahead = (apart > SPACING) & (gap < IN_SIGHT) & (near < wide + act.size.width / 2 + BESIDE)
-            is_ahead[-1] &= act.minds and ahead * speed[-1] >= ALONG * car.speed
+            is_ahead = (apart > SPACING) & (gap < IN_SIGHT) & (near < wide + each.size.width / 2 + BESIDE)
+            is_ahead[-1] &= each.minds and ahead * speed[-1] >= ALONG * car.speed
             if is_ahead.any():
                 first = int(np.where(is_ahead, gap, np.inf).argmin())
-                act.ahead = float(gap[first]), float(ahead * speed[first])
+                each.longitudinal.ahead = float(gap[first]), float(ahead * speed[first])
 
     def _states(self) -> FloatArray:
         nowhere = (np.nan,) * 5
-        return np.vstack([*(act.state() or nowhere for act in self._acts), self._parked])
+        return np.vstack([*(each.state() or nowhere for each in self._performers), self._parked])
 
     @property
     def limited(self) -> dict[str, bool]:
         """See ``Traffic.limited``."""
         return {
-            _did(actor, act, n) + said: is_prescribed
-            for actor, act in zip(self.actors, self._acts, strict=False)
-            for n, (said, is_prescribed) in sorted(act.limited.items())
+            _did(actor, each, n) + said: is_prescribed
+            for actor, each in zip(self.actors, self._performers, strict=False)
+            for n, (said, is_prescribed) in each.limited.items()
         }
 
     @property
     def stopped(self) -> list[int]:
         """The numbers of those who hit the tested car from behind."""
-        return [n for n, act in enumerate(self._acts) if act.hits]
+        return [n for n, each in enumerate(self._performers) if each.hits]
 
     @property
     def missed(self) -> tuple[str, ...]:
         """What of the scene has not begun so far, a sentence for each actor."""
         found = []
-        for actor, act in zip(self.actors, self._acts, strict=False):
-            number = next((n for n in range(len(act.deeds)) if n not in act.shown), None)
+        for actor, each in zip(self.actors, self._performers, strict=False):
+            number = next((n for n in range(len(each.maneuvers)) if n not in each.shown), None)
             if number is None:
                 continue
-            why = "the drive ended before"
-            if number < act.begun and act.meeting and act.car.s > act.meeting.car:
+            why, maneuver, course = "the drive ended before", each.maneuvers[number], each.course
+            if number < each.begun and course.meeting and each.triggers.met.s > course.meeting.its:
                 why = LATE
-            elif act.state() is None:
-                is_gone = act.forward * (act.s - act.way.length / 2) > 0
+            elif each.state() is None:
+                is_gone = course.forward * (course.s - course.way.length / 2) > 0
                 why = "it had left the road" if is_gone else "it was not on the road yet"
-            elif not act.deeds[number].is_open and act.wait(act.deeds[number]) == math.inf:
+            elif not maneuver.is_open and each.triggers.wait(maneuver) == math.inf:
                 why = "what it waits for did not come"
-            found.append(f"{NEVER} {_did(actor, act, number)}: {why}")
+            found.append(f"{NEVER} {_did(actor, each, number)}: {why}")
         return tuple(found)
 
 
-def _did(actor: Actor, act: Act, number: int) -> str:
-    """Returns in words that somebody does one of its actions."""
-    whats = [deed.what for deed in act.deeds[: number + 1]]
+def _did(actor: Actor, who: Performer, number: int) -> str:
+    """Returns in words that somebody does one of its maneuvers."""
     if number < 0:
         return actor.name
-    return f"{actor.name} {MANEUVERS[whats[-1]].said}{' again' * (whats.count(whats[-1]) - 1)}"
+    maneuver = who.maneuvers[number]
+    return f"{actor.name} {MANEUVERS[maneuver.what].said}{' again' * maneuver.before}"
 
 
-def _touch(act: Act, other: Act) -> bool:
-    """Returns whether two would be in one place at first."""
-    (x, y, _, heading), (x_2, y_2, _, heading_2) = (each.way.pose(each.s, each.t) for each in (act, other))
-    return bool(touch(x_2 - x, y_2 - y, heading, *act.size[:2], heading_2, *other.size[:2]))
-
-
-def _meet(act: Act, car: TestedCar) -> None:
+def _touch(who: Performer, car: TestedCar) -> None:
     """Tells somebody who touches the tested car for the first time whether it hits it from behind."""
-    if act.hits is not None or (state := act.state()) is None:
+    if who.hits is not None or (state := who.state()) is None:
         return
     dx, dy, heading = car.x - state[0], car.y - state[1], state[HEADING]
-    if touch(dx, dy, heading, *act.size[:2], car.heading, car.length, car.width):
-        is_ahead = dx * math.cos(heading) + dy * math.sin(heading) > act.size.length / 2
-        act.hits = is_ahead and act.v > 0 and act.slide is None and math.cos(car.heading - heading) > ALONG
+    if touch(dx, dy, heading, *who.size[:2], car.heading, car.length, car.width):
+        is_ahead = dx * math.cos(heading) + dy * math.sin(heading) > who.size.length / 2
+        moves = who.longitudinal.v > 0 and who.lateral.slide is None
+        who.hits = is_ahead and moves and math.cos(car.heading - heading) > ALONG
