@@ -20,7 +20,7 @@ from roadgpt.run import Request, Run, Setup
 from roadgpt.traffic import Tracks
 from roadgpt.verdict import Cause, Incident, Verdict, judge
 from roadgpt.verdict.contact import contacts_of
-from roadgpt.verdict.incidents import limits_at
+from roadgpt.verdict.criteria import limits_at
 from roadgpt_search.faults.failures import manner_of, reason_of
 from staged import among, driven, straight, tracks
 from verdict.test_incidents import WORLD as ROUTE_WORLD

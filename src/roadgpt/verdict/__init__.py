@@ -7,7 +7,7 @@ it moves less than 1 m in 10 s, or if a time limit is exceeded; with ``World.lim
 soon as a front tyre crosses a marking. It passes if it comes within 8 m of the end of the road.
 
 On a route through junctions, or among others, a verdict also lists what else went wrong
-(``roadgpt.verdict.incidents``), and of the first collision who had the way, whether it could have been
+(``roadgpt.verdict.criteria``), and of the first collision who had the way, whether it could have been
 avoided, and whose fault it was; ``measure`` returns how critical a drive was.
 """
 

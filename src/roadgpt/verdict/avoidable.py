@@ -31,7 +31,7 @@ from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y
 from roadgpt.traffic.way import LEAST_GRIP, Way
 from roadgpt.verdict.careful import CAREFUL, DRIVERS, FULL, Driver, Moment, drive_on, stopping_distance
 from roadgpt.verdict.contact import middles, separation
-from roadgpt.verdict.incidents import OVER_BY, limits_at
+from roadgpt.verdict.criteria import OVER_BY, limits_at
 from roadgpt.verdict.measures import ACROSS, ALONG, Line, Measures, measure
 from roadgpt.verdict.verdict import PARTLY, Incident, percent
 

@@ -2,18 +2,17 @@
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from roadgpt.drive.drive_monitor import STUCK_AMONG_OTHERS, STUCK_TIME
-from roadgpt.errors import UsageError
 from roadgpt.language.table import VEHICLES
-from roadgpt.network import only_road
 from roadgpt.road.world import share_in_words
 from roadgpt.traffic.actor import SPEED
 from roadgpt.traffic.traffic import LATE
-from roadgpt.verdict.oracle import EPSILON, consult, has_departed, is_outside, margins
+from roadgpt.verdict.criteria import FREE, NAMED, SUCCESS, Criterion, Evidence, first_failure, incidents_of
+from roadgpt.verdict.oracle import EPSILON, consult, has_departed, margins
 from roadgpt.verdict.verdict import (
     DEPARTURES,
     STANDS,
@@ -21,6 +20,7 @@ from roadgpt.verdict.verdict import (
     Face,
     Fault,
     Incident,
+    Law,
     Outcome,
     Side,
     Verdict,
@@ -28,22 +28,9 @@ from roadgpt.verdict.verdict import (
 )
 
 if TYPE_CHECKING:
-    from roadgpt.drive import Drive, Ended
+    from roadgpt.drive import Drive
     from roadgpt.road import Road, World
-
-INCIDENTS: dict[str, str] = {
-    "out of lane": "out of its lane",
-    "wrong turn": "on a wrong road",
-    "wrong way": "against the direction of its lane",
-    "off road": "a wheel off the road",
-    "stop line": "no stop at a stop sign",
-    "red light": "past a red light",
-    "failure to yield": "no giving way",
-    "collision": "a contact",
-    "near miss": "a near miss",
-    "blocked": "standing for 30 s before a free way",
-    "speeding": "above the speed limit",
-}
+    from roadgpt.verdict.avoidable import Avoidance
 
 FAULTS: dict[Fault | None, str] = {
     "ego": "at fault", "other": "not at fault", "both": "both at fault", "nobody": "nobody at fault",
@@ -52,44 +39,8 @@ FACES: dict[Face, str] = {"front": "front", "rear": "rear", "left": "left side",
 
 LEAST = 0.005  # m; smaller distances beyond a marking are not stated
 
-# The competition's own words, to which it adds the name of the simulation. For the competition, a car that
-# falls has left the lane. The competition has neither signs, lights nor others on the road, so the words for
-# a collision are ours.
-SBFT: dict[Cause | None, str] = {
-    **dict.fromkeys((None, "stop line", "red light", "failure to yield"), "Successful test"),
-    **dict.fromkeys((*DEPARTURES, "wrong turn", "wrong way"), "Car drove out of the lane"),
-    "stuck": "Car is not moving fast enough",
-    "timeout": "Timeout Simulation",
-    "collision": "Car collided",
-}
-
-FAILING: tuple[Cause, ...] = (
-    "collision", "wrong turn", "wrong way", "stop line", "red light", "failure to yield",
-)  # fmt: skip
-"""The kinds of incidents that fail a test: if nothing else failed, or, with others on the road, if they came
-first. The kind of the first such incident is then the cause. A tyre off the road, near misses, standing and
-speeding fail no test.
-"""
-
 GIVES_WAY: tuple[Cause, ...] = ("stop line", "red light", "failure to yield")
 SOON = 3.0  # s after the cause of a failure, within which a contact is told in the same sentence
-
-FAILED: dict[Cause, str] = {
-    "out of lane": "left its lane to the {side}{where} {reached} {fast}{how}",
-    "fell": "fell off {deck} to the {side} {reached} {fast}",
-    "rolled": "left the road to the {side} and rolled over {reached} {fast}",
-    "crashed": "left the road to the {side} and crashed into {wall} {reached} {fast}",
-    "sank": "left the road to the {side} and drove into water {reached} {fast}",
-    "wrong turn": "took a wrong turn {reached} {fast}",
-    "wrong way": "drove against the direction of its lane {reached} {fast}",
-    "stop line": "did not stop at the stop sign {reached}: it crossed the line {fast}",
-    "red light": "ran a red light {reached}: it crossed the line {fast}",
-    "failure to yield": "did not give way to {whom} {reached}: it entered the junction {fast}",
-    "collision": "{contact}",
-    "stuck": "was stuck {reached}: it moved less than 1 m in {patience:.0f} s",
-    "timeout": "ran out of time {reached} of {length:.0f} m",
-}
-"""The description of a failure by its cause; ``_failed`` fills in the gaps."""
 
 
 def judge(
@@ -102,7 +53,7 @@ def judge(
     so is therefore ignored for the margin and ``max_oob``.
 
     On a route through junctions or among others, ``incidents`` lists what the car did wrong
-    (``roadgpt.verdict.incidents``). On a route, if the car kept its lane up to the goal, the first wrong
+    (``roadgpt.verdict.criteria``). On a route, if the car kept its lane up to the goal, the first wrong
     turn, wrong way or missed stop is the failure; with others on the road, the earliest of all failures is
     the cause, and a contact within 3 s is told in the same sentence. A collision that could not have been
     avoided (``roadgpt.verdict.avoidable``) is UNAVOIDABLE.
@@ -112,86 +63,62 @@ def judge(
 
     Raises:
         UsageError: The drive was stopped at a smaller tolerance than ``world.limits.oob_tolerance``."""
-    road = world.lay(road)
-    has_incidents = only_road(road, world) is None or drive.others is not None
-    incidents = tuple[Incident, ...]()
-    if has_incidents:
-        from roadgpt.verdict.incidents import incidents_of  # a single road does not need it
-
-        incidents = incidents_of(road, drive, world)
-    known = known if drive.others is None else None
-    step, cause = known or _first_failure(road, drive, world)
-    if cause is None or drive.others is not None:
-        step, cause = _first_of(incidents, drive, step, cause)
-    behind = _behind(road, drive, world) if cause in ("stuck", "timeout") else ""
-    cause = None if behind else cause
-    hits = [each for each in incidents if each.contact is not None]
-    first = hits[0] if hits else None
-    soon = (each for each in hits if 0 <= each.at_time - drive["time"][step] <= SOON)
-    contact = first if cause == "collision" else next(soon, None) if cause else None
-    every = margins(road, drive, world)
-    least = float(every[: drive.lane_steps].min())
-    side: Side | None = None
-    if cause in DEPARTURES:
-        side = "left" if drive["t"][step] > world.profile_of(road).middle(drive["s"][step]) else "right"
-    if cause in DEPARTURES[1:]:
-        least = min(least, -EPSILON)
-    beyond = most_beyond(road, drive, world)
-    handed_to = drive.handed_to(step) if cause else None
-    outcome: Outcome = "FAIL" if cause else "PASS"
-    found, avoidable, excuse, law, fault = None, None, "", None, None
-    gap, ttc = _least(road, drive, world, first)
-    is_yielding = handed_to and cause in GIVES_WAY  # what came of it may be a matter of the brakes
-    if first is not None and (is_yielding or cause == "collision"):
-        from roadgpt.verdict.avoidable import avoidance_of
-
-        found = avoidance_of(road, drive, world, first)
-        is_avoidable = found.is_avoidable or found.is_own_doing
-        avoidable = is_avoidable if cause == "collision" else None
-        outcome = "FAIL" if is_avoidable or cause != "collision" else "UNAVOIDABLE"
-    if first is not None and first.contact is not None:
-        from roadgpt.verdict.law import fault_of, law_of
-
-        law = law_of(road, drive, world, incidents)
-        fault = fault_of(law, first.contact, bool(found and found.is_own_doing))
+    case = Evidence(world.lay(road), drive, world)
+    incidents = incidents_of(case)
+    step, failed = first_failure(case, incidents, known if drive.others is None else None)
+    behind = _behind(case) if failed and failed.name in ("stuck", "timeout") else ""
+    failed = None if behind else failed
+    cause = cast("Cause | None", failed and failed.name)
+    hit = next((each for each in incidents if each.contact is not None), None)
+    handed_to = drive.handed_to(step) if failed else None
+    asks = cause == "collision" or bool(handed_to and cause in GIVES_WAY)  # those may be up to the brakes
+    found, law, fault = _blame(case, incidents, hit, asks)
+    avoidable = found.is_avoidable or found.is_own_doing if found and cause == "collision" else None
+    outcome: Outcome = "PASS" if failed is None else "UNAVOIDABLE" if avoidable is False else "FAIL"
+    excuse = ""
     if handed_to and outcome == "FAIL":
         excuse = f"{handed_to} drove where the car failed, so the failure is not {drive.driver}'s"
-        if first and found and found.is_avoidable and _asks_for_emergency_braking(drive, first):
+        if hit and found and found.is_avoidable and _asks_for_emergency_braking(drive, hit):
             excuse = f"{handed_to} drove there, but emergency braking stays {drive.driver}'s"
             handed_to = None
-    if cause is None:
+    least = float(margins(case.road, drive, world)[: drive.lane_steps].min())
+    least = min(least, -EPSILON) if cause in DEPARTURES[1:] else least
+    beyond, (gap, ttc) = most_beyond(case.road, drive, world), _least(case, hit)
+    side = _side(case, step) if cause in DEPARTURES else None
+    soon = (each for each in incidents if each.contact and 0 <= each.at_time - drive["time"][step] <= SOON)
+    contact = hit if cause == "collision" else next(soon, None) if failed else None
+    if failed is None:
         description = _kept(drive, world, least, beyond, behind)
     else:
         whom = next((each.other for each in incidents if each.kind == cause), None)
-        description = _failed(road, drive, world, step, cause, side, contact, whom, fault)
+        description = _failed(case, step, failed, side, contact, whom, fault)
     untold = [each for each in incidents if each is not contact or cause == "collision"]
     description += _counted(untold, cause) + _who_drove(drive.shares, excuse)
-    s, x, y, time = (float(drive[name][step]) for name in ("s", "x", "y", "time"))
-    description += f"; {found.said}" if found else ""
-    if cause == "collision" and contact is not None:
-        s, (x, y), time = contact.at_s, contact.at_xy, contact.at_time
-    description += "".join(f"; {each}" for each in drive.limited)
-    if cause is None and drive.missed:
+    description += "".join(f"; {each}" for each in [*filter(None, [found and found.said]), *drive.limited])
+    if failed is None and drive.missed:
         from roadgpt.verdict.happened import told
 
-        outcome, why = told(road, drive, world)
+        outcome, why = told(case.road, drive, world)
         description = f"{description}; {why}" if outcome == "PASS" else f"{why}; {description}"
     else:
         description += "".join(f"; {each}" for each in drive.missed if not each.endswith(LATE))
+    s, x, y, time = (float(drive[name][step]) for name in ("s", "x", "y", "time"))
+    if cause == "collision" and contact is not None:
+        s, (x, y), time = contact.at_s, contact.at_xy, contact.at_time
     return Verdict(
         outcome=outcome,
         cause=cause,
         description=description,
-        sbft_description=SBFT[cause],
+        sbft_description=failed.sbft if failed else SUCCESS,
         max_oob=drive.max_outside,
         margin=least,
-        oob_counter=int(consult(road, drive, world).oob_counter[-1]),
+        oob_counter=int(consult(case.road, drive, world).oob_counter[-1]),
         beyond=beyond,
-        at_s=s if cause else None,
-        at_xy=(x, y) if cause else None,
-        at_time=time if cause else None,
+        at_s=s if failed else None,
+        at_xy=(x, y) if failed else None,
+        at_time=time if failed else None,
         side=side,
-        incidents=incidents if has_incidents else None,
+        incidents=incidents if case.is_route or drive.others is not None else None,
         least_gap=gap,
         least_ttc=ttc,
         own_share=drive.shares.get(drive.driver),
@@ -204,17 +131,34 @@ def judge(
     )
 
 
-def _least(
-    road: "Road", drive: "Drive", world: "World", hit: Incident | None
-) -> tuple[float | None, float | None]:
-    """Returns the least gap in metres and the least time to collision in seconds up to the first contact."""
-    if drive.others is None:
-        return None, None
-    from roadgpt.verdict.measures import measure
+def _blame(
+    case: Evidence, incidents: Sequence[Incident], hit: Incident | None, is_avoidance_asked: bool
+) -> "tuple[Avoidance | None, Law | None, Fault | None]":
+    """Returns whether the first contact could have been avoided, what the law says, and whose fault it is."""
+    found, (road, drive, world) = None, (case.road, case.drive, case.world)
+    if hit is None or hit.contact is None:
+        return None, None, None
+    if is_avoidance_asked:
+        from roadgpt.verdict.avoidable import avoidance_of
 
-    measured = measure(road, drive, world)
-    before = measured.time <= (np.inf if hit is None else hit.at_time)
-    least = [float(each[before].min(initial=np.inf)) for each in (measured.gap, measured.ttc)]
+        found = avoidance_of(road, drive, world, hit)
+    from roadgpt.verdict.law import fault_of, law_of
+
+    law = law_of(road, drive, world, incidents)
+    return found, law, fault_of(law, hit.contact, bool(found and found.is_own_doing))
+
+
+def _side(case: Evidence, step: int) -> Side:
+    middle = case.world.profile_of(case.road).middle(case.drive["s"][step])
+    return "left" if case.drive["t"][step] > middle else "right"
+
+
+def _least(case: Evidence, hit: Incident | None) -> tuple[float | None, float | None]:
+    """Returns the least gap in metres and the least time to collision in seconds up to the first contact."""
+    if case.drive.others is None:
+        return None, None
+    before = case.measured.time <= (np.inf if hit is None else hit.at_time)
+    least = [float(each[before].min(initial=np.inf)) for each in (case.measured.gap, case.measured.ttc)]
     gap, ttc = (round(each, 3) if np.isfinite(each) else None for each in least)
     return gap if hit is None else 0.0, ttc
 
@@ -228,35 +172,6 @@ def most_beyond(road: "Road", drive: "Drive", world: "World") -> float:
     return max(float(body[: drive.lane_steps].max()), 0.0)
 
 
-def _first_failure(road: "Road", drive: "Drive", world: "World") -> tuple[int, Cause | None]:
-    """Returns the step at which the drive failed and the cause; the last step and None if it did not."""
-    last = len(drive) - 1
-    out = is_outside(road, drive, world)
-    if out.any():
-        return int(np.argmax(out)), "out of lane"
-    if drive.ended == "out_of_lane":
-        raise UsageError(
-            f"the drive was ended with {drive['outside'][last]:.3f} of the car outside its lane, which "
-            f"a tolerance of {world.limits.oob_tolerance:g} allows: drive the road again with this tolerance"
-        )
-    causes: dict[Ended, Cause] = {
-        "fell": "fell", "rolled": "rolled", "crashed": "crashed", "sank": "sank",
-        "stuck": "stuck", "timeout": "timeout", "collision": "collision",
-    }  # fmt: skip
-    return last, causes.get(drive.ended)
-
-
-def _first_of(
-    incidents: Sequence[Incident], drive: "Drive", step: int, cause: Cause | None
-) -> tuple[int, Cause | None]:
-    """Returns the step and the cause of the first failing incident; ``step`` and ``cause`` if there is none,
-    or if they came first."""
-    for each, name in ((each, name) for each in incidents for name in FAILING if name == each.kind):
-        first = min(int(np.searchsorted(drive["time"], each.at_time)), len(drive) - 1)
-        return (first, name) if cause is None or first <= step else (step, cause)
-    return step, cause
-
-
 def _counted(incidents: Sequence[Incident], cause: Cause | None) -> str:
     """Returns the number of incidents of each kind in words; the first of the cause's kind is named
     already."""
@@ -266,7 +181,7 @@ def _counted(incidents: Sequence[Incident], cause: Cause | None) -> str:
     for kind, count in of_kind.items():
         first = next(each.at_s for each in incidents if each.kind == kind)
         often = "once," if count == 1 else f"{count} times, first"
-        words.append(f"{INCIDENTS[str(kind)]} {often} after {first:.0f} m")
+        words.append(f"{NAMED[str(kind)].said} {often} after {first:.0f} m")
     return "".join(f"; {each}" for each in words)
 
 
@@ -292,20 +207,18 @@ def far_beyond(beyond: float) -> str:
     return f"{beyond:.2f} m beyond the marking" if beyond >= LEAST else "on the marking"
 
 
-def _behind(road: "Road", drive: "Drive", world: "World") -> str:
+def _behind(case: Evidence) -> str:
     """Returns in words behind whom of a scene the car stayed at the end; empty if the way was free."""
-    if drive.others is None or not drive.others.actors or not world.scene.actors:
+    others = case.drive.others
+    if others is None or not others.actors or not case.world.scene.actors:
         return ""
-    from roadgpt.verdict.incidents import FREE
-    from roadgpt.verdict.measures import measure
-
-    gaps = measure(road, drive, world).gap[-1]
+    gaps = case.measured.gap[-1]
     who = int(np.argmin(gaps))
     if gaps[who] > FREE:
         return ""
-    speed = abs(float(drive.others.states[-1, who, SPEED]))
+    speed = abs(float(others.states[-1, who, SPEED]))
     does = f"drives at {speed * 3.6:.0f} km/h" if speed > STANDS else "stands"
-    return f"{gaps[who]:.1f} m behind {drive.others.actors[who].name}, which {does} in its way"
+    return f"{gaps[who]:.1f} m behind {others.actors[who].name}, which {does} in its way"
 
 
 def _kept(drive: "Drive", world: "World", margin: float, beyond: float, behind: str) -> str:
@@ -323,9 +236,10 @@ def _kept(drive: "Drive", world: "World", margin: float, beyond: float, behind: 
 
 
 def _failed(
-    road: "Road", drive: "Drive", world: "World", step: int, cause: Cause, side: Side | None,
-    contact: Incident | None, whom: str | None, fault: Fault | None,
+    case: Evidence, step: int, failed: Criterion, side: Side | None, contact: Incident | None,
+    whom: str | None, fault: Fault | None,
 ) -> str:  # fmt: skip
+    (road, drive, world), cause = (case.road, case.drive, case.world), failed.name
     profile = world.profile_of(road)
     is_beside = (
         side == ("right" if profile.left_hand else "left") and profile.driven_id != profile.along_ids[0]
@@ -337,7 +251,7 @@ def _failed(
         else f"more than {share_in_words(world.limits.oob_tolerance)} was outside"
     )
     later = f"{contact.at_time - drive['time'][step]:.1f} s later" if contact else ""
-    told = FAILED[cause].format(
+    told = failed.failed.format(
         side=side,
         where=", into the next lane of its direction," if is_beside else "",
         reached=f"after {min(drive['s'][step], road.length):.0f} m",
@@ -354,7 +268,7 @@ def _failed(
     return f"{told} and {_touched(contact, later, fault)}" + (f"; {how}" if cause == "out of lane" else "")
 
 
-def _place(road: "Road", world: "World", cause: Cause, s: float) -> dict[str, str]:
+def _place(road: "Road", world: "World", cause: str, s: float) -> dict[str, str]:
     """Returns what a car falls off, and what it crashes into, at a station."""
     if cause not in ("fell", "crashed") or not world.has_ground:
         return {"deck": "the road", "wall": "the slope"}

@@ -21,7 +21,7 @@ from roadgpt.network.lanes import lanes_of
 from roadgpt.network.markings import CROSSED
 from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y
 from roadgpt.verdict.contact import CORNER
-from roadgpt.verdict.incidents import OVER, OVER_BY, STOOD, STOP_WITHIN, TOO_FAST, limits_at
+from roadgpt.verdict.criteria import OVER, OVER_BY, STOOD, STOP_WITHIN, TOO_FAST, limits_at
 from roadgpt.verdict.measures import ACROSS, Boxes, Line, measure
 from roadgpt.verdict.right_of_way import LATER, who_drives
 from roadgpt.verdict.verdict import STANDS, Contact, Fault, Incident, Law, Offence, Party

@@ -4,7 +4,7 @@
 - failure to yield: the front of the car enters a junction, and somebody drives a way through it to which the
   car's way gives way (see ``network.lanes``); at its speed at that moment it would come to the place where
   the ways meet before the car has left it, or within 1 s; the car comes there first; and then, because of
-  that, it brakes by 3 m/s2 or more over 0.5 s, or the two have a near miss (see ``verdict.incidents``).
+  that, it brakes by 3 m/s2 or more over 0.5 s, or the two have a near miss (see ``verdict.criteria``).
   Or the two touch there, whoever came first. Who comes at a red light has no priority.
 
 To give way is not to compel others to change their speed abruptly (Vienna Convention on Road Traffic, 1968,
