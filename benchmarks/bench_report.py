@@ -15,7 +15,7 @@ from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import Record, Store
 from roadgpt.campaign.single_test import FinishedTest
 from roadgpt.design import draft
-from roadgpt.report.campaign_report import write_store_report
+from roadgpt.report.report import write_report
 from roadgpt.road import World
 from roadgpt.run.model import Request
 
@@ -82,7 +82,7 @@ def main(tests: int) -> None:
                 for _ in record.results():
                     pass
 
-        report, cpu = clocked(lambda: write_store_report(folder))
+        report, cpu = clocked(lambda: write_report(folder))
         rows, rows_cpu = clocked(all_rows)
     print("| tests | store, MB | report, s (processor) | every row read, s (processor) |")
     print("|---|---|---|---|")

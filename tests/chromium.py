@@ -185,3 +185,10 @@ def browser() -> Iterator[BrowserTab]:
             process.wait()
             os.close(our_write)
             os.close(our_read)
+
+
+def opened(page: BrowserTab, path: Path) -> None:
+    """Show a page of a file, and wait until it is there."""
+    page.send("Page.navigate", url=path.resolve().as_uri())
+    while page.run("document.readyState + location.protocol") != "completefile:":
+        time.sleep(0.02)

@@ -26,6 +26,7 @@ _OFFERED = {
     "verdict": "Verdict judge",
     "run": "Run perform prove",
     "campaign": "campaign",
+    "campaign.csv_tables": "to_frame",
     "report": "draw",
     "report.plotting": "plot",
     "report.similarity": "compare",

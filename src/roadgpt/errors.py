@@ -3,6 +3,7 @@
 import shlex
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -142,6 +143,16 @@ def explained(kind: type[RoadGPTError], what: str, advice: str) -> Iterator[None
 def command_line(*words: object) -> str:
     """Returns a command that can be typed in the present folder; in messages it follows a colon, and ends."""
     return shlex.join(["roadgpt", *map(str, words)])
+
+
+def needed(package: str, what: str) -> Any:
+    """Returns a package that is an extra of its own name; raises UsageError if it is missing, which says that
+    ``what`` needs it, and how it is installed."""
+    try:
+        return import_module(package)
+    except ImportError as error:
+        advice = to_install(package)
+        raise UsageError(f"{what} needs the package '{package}'; install it with: {advice}") from error
 
 
 def to_install(extra: str) -> str:

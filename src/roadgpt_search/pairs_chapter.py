@@ -6,10 +6,10 @@ from roadgpt.campaign.model import Result
 from roadgpt.campaign.record import Record
 from roadgpt.design.elements import elements_of
 from roadgpt.errors import command_line
-from roadgpt.report.campaign_report import again
 from roadgpt.report.chapters import Chapter
 from roadgpt.report.chapters.wording import decimal, row
 from roadgpt.report.page.model import Section, Table, cell
+from roadgpt.report.road_record import file_of
 from roadgpt_search.boundary_pairs import BoundaryPair, pairs_of, weightiest
 
 MOST_CELLS = 12  # that are searched
@@ -44,9 +44,9 @@ def chapter(record: Record) -> Chapter | None:
     view = command_line("view", *(f"{folder}/{name}/{at}" for at in (first.kept, first.lost)))
     rows = [
         row(
-            cell(f"{name}/{pair.kept}", href=again(folder, name, pair.kept)),
+            cell(f"{name}/{pair.kept}", href=file_of(folder, name, pair.kept)),
             decimal(kept.margin),
-            cell(f"{name}/{pair.lost}", href=again(folder, name, pair.lost)),
+            cell(f"{name}/{pair.lost}", href=file_of(folder, name, pair.lost)),
             decimal(lost.at_s, 0),
             decimal(pair.distance),
             weightiest(*(elements_of(its.plain_design.segments) for its in (kept, lost) if its.plain_design)),

@@ -13,13 +13,14 @@ from roadgpt.chat import asks_a_model
 from roadgpt.check.truth import Truth
 from roadgpt.errors import UsageError, explained
 from roadgpt.reading import json_of, read_model, read_text
-from roadgpt.report.road_record import name_of
 from roadgpt.road import ORACLES, Limits, World
 from roadgpt.run import Setup
 from roadgpt.run.atomic import is_new, json_text, write_whole
+from roadgpt.run.folder import slug
 
 CARD = "study.json"
 MOST = 10_000  # prompts in a file
+LETTERS = 32  # of a description, in the name of its folder
 
 Kind = Literal["thesis", "alignment"]
 
@@ -44,7 +45,8 @@ class StudyPart(NamedTuple):
     @property
     def name(self) -> str:
         """The path of the folder of this part, relative to the study's folder, with forward slashes."""
-        return name_of(self.designer, self.number, self.prompt.prompt)
+        words = slug(self.prompt.prompt)[:LETTERS].strip("-")
+        return f"{slug(self.designer)}/{self.number:02d}-{words}"
 
 
 class StudyPlan(Frozen):

@@ -1,21 +1,27 @@
 """Writes the report of a study, from the files in its folder."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from itertools import combinations, product
 from pathlib import Path
 
 import numpy as np
 
+from roadgpt.campaign.folder_record import has_tests, open_record
+from roadgpt.campaign.record import Record
 from roadgpt.plural import plural
 from roadgpt.reading import read_json
 from roadgpt.report.chapters.alignment import alignment
-from roadgpt.report.chapters.roads import overview
+from roadgpt.report.chapters.diversity import diversity
+from roadgpt.report.chapters.roads import coverage, every_road, overview
+from roadgpt.report.chapters.validity import LEFT, outside_sentences, passed_tests, source_of
 from roadgpt.report.chapters.wording import decimal, row
 from roadgpt.report.page import write
-from roadgpt.report.page.model import Page, Table, TableCell
+from roadgpt.report.page.model import Page, Table, TableCell, cell
+from roadgpt.report.report import card_of, kept_and_alike, valid_sentence
 from roadgpt.report.road_record import RoadGroup, read_group
-from roadgpt.report.run_report import card_of, comparisons_of, sentences_of
 from roadgpt.report.similarity import similarity
+from roadgpt.run import Request
 from roadgpt.run.atomic import json_text, write_whole
 from roadgpt_study.execution import Problem
 from roadgpt_study.plan import StudyPlan, read_plan
@@ -46,15 +52,20 @@ def write_study(folder: Path) -> Path:
             part.designer,
             part.prompt.prompt,
             part.prompt.truth,
-            number=part.number,
             id=part.prompt.id,
-            home=part.name,
+            name=part.name,
             problem=problems.get(part.name, ""),
             wanted=plan.roads,
         )
         for part in plan.parts()
     ]
-    return write(page_of(plan, parts), folder)
+    with ExitStack() as stack:
+        records = {
+            part.name: stack.enter_context(open_record(folder / part.name))
+            for part in parts
+            if has_tests(folder / part.name)
+        }
+        return write(page_of(plan, parts, records), folder)
 
 
 def _problems(folder: Path) -> Mapping[str, str]:
@@ -65,36 +76,75 @@ def _problems(folder: Path) -> Mapping[str, str]:
     return {str(key): str(value) for key, value in found.items()} if isinstance(found, dict) else {}
 
 
-def page_of(plan: StudyPlan, parts: Sequence[RoadGroup]) -> Page:
-    """Returns the page with the report of a study."""
-    is_thesis = plan.kind == "thesis"
-    valid, left = (make(parts, plan.designers, has_baseline=is_thesis) for make in (validity, departures))
+def page_of(plan: StudyPlan, parts: Sequence[RoadGroup], records: Mapping[str, Record]) -> Page:
+    """Returns the page with the report of a study; ``records`` are those of its parts, by name."""
+    is_thesis, passed = plan.kind == "thesis", passed_tests([*records.values()])
+    valid = validity(parts, plan.designers, has_baseline=is_thesis)
+    left = departures(parts, plan.designers, passed, has_baseline=is_thesis)
     kept = alignment(parts, plan.designers, lambda asking: bootstrap(asking)[1])
-    first = overview(parts, plan.world.site.map_size)
     own = [valid, left, kept] if is_thesis else [kept, valid, *([left] if plan.setup.drives else [])]
+    first, features = _glance(parts), coverage([*records.values()])
+    own += [diversity(parts, [_between(parts)]), *([features] if features else []), every_road(parts)]
+    requests = [
+        Request(setup=plan.setup_of(name), world=plan.world, seed=plan.seed) for name in plan.designers
+    ]
     title = "The evaluation of RoadGPT's thesis, done again" if is_thesis else "Do roads keep the words?"
     lead = f"{plural(len(plan.prompts), 'description')}, {plural(plan.roads, 'road')} each"
+    versions = [part.versions for part in parts]
     return Page(
         title,
-        _summary(plan, parts),
-        [*([first] if first else []), *own, *comparisons_of(parts, plan.world, [_between(parts)])],
-        card_of(plan.command, plan.roads, plan.seed, plan.setup, plan.world, parts),
+        _summary(plan, parts, records),
+        [*([overview(parts, first)] if first.rows else []), *own],
+        card_of(plan.command, requests, versions, parts, f"{plan.roads:,} of each"),
         f"{lead}, seed {plan.seed}" + (f", from {plan.source}" if plan.source else ""),
     )
 
 
-def _summary(plan: StudyPlan, parts: Sequence[RoadGroup]) -> list[str]:
-    lines = []
+def _glance(parts: Sequence[RoadGroup]) -> Table:
+    heads = [
+        "description", "made by", "roads", "valid", "keep every word", "driven", "left the lane",
+        "nearest two plans, m", "near duplicates",
+    ]  # fmt: skip
+    note = (
+        "Nearest two plans: root mean square distance of the two most similar roads, after the best shift, "
+        "turn and mirroring. The sections below contain intervals, tests and every road."
+    )
+    rows = []
+    for part in (each for each in parts if each.roads):
+        good, driven, several = part.kept("general"), part.count("is_driven"), len(part.compared) > 1
+        rows.append(
+            row(
+                cell(part.words, href=part.overview),
+                part.designer,
+                len(part.roads),
+                part.count("is_valid"),
+                sum(good) if good else None,
+                driven or None,
+                part.count("has_left") if driven else None,
+                decimal(float(np.min(part.spread.nearest)) if several else None, 1),
+                len(part.spread.duplicates) if several else None,
+            )
+        )
+    return Table("glance", "Roads by description", heads, rows, note)
+
+
+def _summary(plan: StudyPlan, parts: Sequence[RoadGroup], records: Mapping[str, Record]) -> list[str]:
+    lines, is_thesis = [], plan.kind == "thesis"
     for designer in plan.designers:
         own = [part for part in parts if part.designer == designer]
         if not any(part.roads for part in own):
             problem = next((part.problem for part in own if part.problem), "nothing was made")
             lines.append(f"{designer} was not run: {problem}.")
             continue
-        if plan.kind == "thesis":
-            said = sentences_of(own, plan.world, counted=of_thesis(own), beside=BESIDE)
-        else:
-            said = sentences_of(own, plan.world)
+        counted, beside = (of_thesis(own), BESIDE) if is_thesis else (own, ("", ""))
+        left = source_of(designer, counted, LEFT)
+        passed = passed_tests([records[part.name] for part in own if part.name in records])
+        said = [
+            *valid_sentence(designer, counted, beside[0]),
+            *([f"The car left its lane on {left.share} driven roads{beside[1]}."] if left.total else []),
+            *outside_sentences(passed, plan.world),
+            *kept_and_alike(own),
+        ]
         lines += said if len(plan.designers) == 1 else [f"{designer}: {sentence}" for sentence in said]
     return lines
 

@@ -4,8 +4,21 @@ counts of RoadGPT's thesis."""
 from collections.abc import Sequence
 
 from roadgpt.report.chapters import validity as chapter
-from roadgpt.report.chapters.validity import KINDS, LEFT, Count, Kind, Parts, Source, source_of
-from roadgpt.report.chapters.wording import decimal, p_value, row
+from roadgpt.report.chapters.roads import named_roads
+from roadgpt.report.chapters.validity import (
+    KINDS,
+    LEFT,
+    Count,
+    Kind,
+    Parts,
+    Passed,
+    Source,
+    outside_table,
+    shares_forest,
+    shares_table,
+    source_of,
+)
+from roadgpt.report.chapters.wording import decimal, folded, p_value, row
 from roadgpt.report.page.model import Block, Details, Section, Table, TableCell, cell
 from roadgpt.report.road_record import RoadGroup
 from roadgpt.report.statistics import LEVEL, ChiSquared, chi_squared
@@ -54,22 +67,28 @@ def validity(parts: Parts, designers: Sequence[str], has_baseline: bool = False)
     return chapter.validity(parts, every, blocks)
 
 
-def departures(parts: Parts, designers: Sequence[str], has_baseline: bool = False) -> Section:
-    """Returns the section on lane departures on valid roads; ``has_baseline`` is as in ``validity``."""
+def departures(
+    parts: Parts, designers: Sequence[str], passed: Sequence[Passed], has_baseline: bool = False
+) -> Section:
+    """Returns the section on lane departures on valid roads, and on how far outside its lane the car was in
+    tests that it ``passed``; ``has_baseline`` is as in ``validity``."""
     every = [
         source for designer in designers if (source := _counted(designer, parts, LEFT, has_baseline)).total
     ]
-    is_driven, aside = bool(every), " (in the thesis: by its own checks)" if has_baseline else ""
+    blocks: list[Block] = [] if every else ["These roads were not driven."]
     every += [THESIS_LEFT] if has_baseline else []
-    blocks = [
-        block
-        for source in every
-        if len(source.counts) > 1
-        for block in chi_squared_blocks(source, "left", "kept", f"departures-{source.slug}")
-    ]
-    made = chapter.departures(parts, every, blocks, aside)
-    is_told = is_driven or not every
-    return made if is_told else Section(made.title, [chapter.NOT_DRIVEN, *made.blocks])
+    if every:
+        aside = " (in the thesis: by its own checks)" if has_baseline else ""
+        blocks += [
+            f"Drives on which the car left its lane, on roads that are valid by the strict rules{aside}.",
+            shares_forest("departures", "on which the car left its lane", every),
+            shares_table("departures", "left", every),
+        ]
+    for source in every:
+        if len(source.counts) > 1:
+            blocks += chi_squared_blocks(source, "left", "kept", f"departures-{source.slug}")
+    left = named_roads(parts, lambda road: road.result.description if road.has_left else "")
+    return Section("Leaving the lane", [*blocks, *outside_table(passed), *folded("Drives that left", left)])
 
 
 def _counted(designer: str, parts: Parts, kind: Kind, has_baseline: bool) -> Source:

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 from collections.abc import Callable, Iterator
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
@@ -80,6 +81,9 @@ def test_a_column_stands_in_tables_junit_lines_and_the_report(register: Register
     cases = [*ElementTree.parse(file).getroot().iter("testcase")]
     page = Path(roadgpt("report", out).stdout.strip()).read_text(encoding="utf-8")
     assert "fastest_kmh" in page
+    brief = Path(roadgpt("report", out, "--brief").stdout.strip()).read_text(encoding="utf-8")
+    worst = float((re.search(r"fastest_kmh ([\d.]+)", brief) or "0")[1])
+    assert worst in [pytest.approx(float(row["FASTEST"]), abs=0.1) for row in rows]
     for number, (row, case) in enumerate(zip(rows, cases, strict=True), 1):
         said = roadgpt("show", f"{out}/c01/{number}", "--json").stdout
         speed = json.loads(said)["fastest_kmh"]
@@ -116,6 +120,7 @@ def test_columns_that_clash_or_break_are_named(
 def test_chapters_stand_before_and_behind_those_of_the_report(register: Register, tmp_path: Path) -> None:
     parts = {"rain": "weather", "advice": "advice", "nothing": "nothing"}
     register(chapters=parts, columns={"speed": "SPEED"})
+    every = {}
     for command, own in (("run", "Validity"), ("campaign", "Outcomes")):
         out = tmp_path / command
         made = roadgpt(command, *FAILING, "--out", out, *(["--no-plot"] if command == "run" else []))
@@ -127,5 +132,8 @@ def test_chapters_stand_before_and_behind_those_of_the_report(register: Register
         heads = [at.split("<")[0] for at in page.split("<h2>")[1:]]
         assert heads.index("Weather") < heads.index(own)
         assert heads[-2:] == ["Advice", "How this was made"]
+        assert "fastest_kmh" in Path(roadgpt("report", out, "--brief").stdout.strip()).read_text("utf-8")
+        every[command] = [head for head in heads if head != "Feature map"]
         assert f"It rained in {out.name}." in page
         assert page.index("It rained.") < page.index("Go on.")
+    assert every["run"] == every["campaign"], "one report"

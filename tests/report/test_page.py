@@ -13,11 +13,12 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
+from roadgpt.campaign.columns import bounds_of_columns
 from roadgpt.cli.screen import COLOURS
 from roadgpt.drive import COLUMNS, Box, Columns, Drive
 from roadgpt.errors import RoadGPTError
 from roadgpt.report.canvas import OUTCOMES
-from roadgpt.report.chapters.roads import BOUNDS, MAPS, feature_map
+from roadgpt.report.chapters.roads import MAPS, feature_map
 from roadgpt.report.overview import Thumbnail
 from roadgpt.report.page import STYLE, csv_of, html_of, latex_of, write
 from roadgpt.report.page.charts import AxisRange, Share, bars, forest, heat, is_map, lines, palette
@@ -284,7 +285,7 @@ def test_a_map_that_shows_nothing_is_none(filled: list[float], is_one: bool) -> 
     values = np.zeros(25)
     values[: len(filled)] = filled
     assert is_map(values.reshape(5, 5)) is is_one
-    figures = feature_map("map", values.reshape(5, 5), MAPS[0], BOUNDS, "tests", "Tests in {}.")
+    figures = feature_map("map", values.reshape(5, 5), MAPS[0], bounds_of_columns(), "tests", "Tests in {}.")
     assert len(figures) == is_one
 
 

@@ -1,13 +1,12 @@
 """Pages in a real browser: nothing is asked for, nothing sticks out, both colour schemes, phone and desk."""
 
 import json
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from chromium import FOUND, BrowserTab, browser
+from chromium import FOUND, browser, opened
 from roadgpt.report.page import write
 from roadgpt.report.page.charts import AxisRange, Share, forest, heat
 from roadgpt.report.page.model import Figure, Page, Section, Table, cell
@@ -27,12 +26,6 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
         Page("A report", ["The first line.", "word" * 60], sections, {"seed": "1"}),
         tmp_path_factory.mktemp("r"),
     )
-
-
-def opened(page: BrowserTab, path: Path) -> None:
-    page.send("Page.navigate", url=path.resolve().as_uri())
-    while page.run("document.readyState + location.protocol") != "completefile:":
-        time.sleep(0.02)
 
 
 def test_it_fits_every_screen_in_both_schemes_and_prints(report: Path) -> None:

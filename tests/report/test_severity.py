@@ -10,13 +10,13 @@ import pytest
 from matplotlib.colors import to_rgb
 from PIL import Image
 
+from roadgpt.campaign.folder_record import open_record
 from roadgpt.drive import Columns
 from roadgpt.report import Drawing
 from roadgpt.report.birds_eye import places_of, severities
 from roadgpt.report.canvas import OUTCOMES, SEVERE, outcome_of
-from roadgpt.report.chapters.validity import outside_sentences, outside_table, passed_roads
+from roadgpt.report.chapters.validity import outside_sentences, outside_table, passed_tests
 from roadgpt.report.overview import _thumbnail, overview
-from roadgpt.report.road_record import RoadRecord
 from roadgpt.report.view import scene
 from roadgpt.road import Road, World
 from roadgpt.run import Run, prove, write_run
@@ -101,15 +101,15 @@ def test_the_overview_tells_them_apart(runs: dict[str, Run], tmp_path: Path) -> 
     assert min(shares_of(page, SEVERE.values())) > 1e-4
 
 
-def test_reports_count_them(runs: dict[str, Run]) -> None:
-    def looked(run: Run) -> RoadRecord:
-        assert run.verdict is not None
-        return RoadRecord(1, run.outcome, "", True, True, True, "", run.verdict, np.empty((0, 2)), {}, None)
-
-    every = [looked(run) for run in runs.values()]
-    found = passed_roads([*every, every[2]])
-    assert [(each.severity, each.tests) for each in found] == [*zip(SEVERITIES, (1, 1, 2), strict=True)]
+def test_reports_count_them(runs: dict[str, Run], tmp_path: Path) -> None:
     worst = runs["mostly outside"]
+    for run in (*runs.values(), replace(worst, index=4)):
+        write_run(run, tmp_path / "all")
+    write_run(runs["at most 10 % outside"], tmp_path / "one")
+    with open_record(tmp_path / "all") as record, open_record(tmp_path / "one") as other:
+        found, inside, both = (passed_tests(its) for its in ([record], [other], [record, other]))
+    assert [(each.severity, each.tests) for each in found] == [*zip(SEVERITIES, (1, 1, 2), strict=True)]
+    assert [each.tests for each in both] == [2, 1, 2]
     assert worst.verdict is not None
     (sentence,) = outside_sentences(found, worst.world)
     assert "partly outside its lane on 1 of 4 (25.0 %) and mostly outside on 2 of 4 (50.0 %)" in sentence
@@ -117,6 +117,6 @@ def test_reports_count_them(runs: dict[str, Run]) -> None:
     assert f"{worst.verdict.beyond:.2f} m beyond the marking" in sentence
     (table,) = outside_table(found)
     assert [row[1].value for row in table.rows] == [1, 1, 2]
-    (whole,) = outside_sentences(passed_roads(every[:1]), worst.world)
+    (whole,) = outside_sentences(inside, worst.world)
     assert "never outside its lane" in whole
-    assert outside_sentences(passed_roads([]), worst.world) == outside_table(passed_roads([])) == []
+    assert outside_sentences(passed_tests([]), worst.world) == outside_table(passed_tests([])) == []

@@ -8,7 +8,7 @@ from roadgpt.campaign.model import Cell, CellBudget, Proposal, Result
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import Store
 from roadgpt.campaign.single_test import FinishedTest
-from roadgpt.report.campaign_report import write_store_report
+from roadgpt.report.report import write_report
 from roadgpt.road import Design, Segment
 from roadgpt.run.model import Request, Seconds
 
@@ -46,7 +46,7 @@ def test_the_nearest_pairs_of_a_search_for_the_boundary_are_listed(tmp_path: Pat
             )  # fmt: skip
             store.keep([("c01", FinishedTest(result, seconds=Seconds(0.01, 0.1)))], None, {"c01": 1.0})
         store.finish()
-    write_store_report(tmp_path)
+    write_report(tmp_path)
     _, *rows = csv.reader((tmp_path / "tables" / "pairs.csv").read_text(encoding="utf-8").splitlines())
     assert rows == [
         ["c01/1", "0.25", "c01/4", "52.0", "2.0", "straight 2: grade 0 %, then 2 %"],

@@ -11,9 +11,9 @@ import pytest
 from page_words import words_of
 from roadgpt.campaign.model import Cell, CellBudget, Proposal, Result
 from roadgpt.campaign.plan import Plan
-from roadgpt.campaign.record import Store
+from roadgpt.campaign.record import Record, Store
 from roadgpt.campaign.single_test import FinishedTest
-from roadgpt.report.campaign_report import write_store_report
+from roadgpt.report.report import write_report
 from roadgpt.run.model import Request, Seconds
 
 CELLS, TESTS = ("c01", "c02"), 300
@@ -80,7 +80,7 @@ def rows(folder: Path, name: str) -> list[dict[str, str]]:
 
 
 def test_counts_are_those_of_the_results(campaign: Path) -> None:
-    write_store_report(campaign)
+    write_report(campaign)
     found = rows(campaign, "outcomes")
     for row in found:
         own = [result for cell, result in drawn() if cell == row["cell"]]
@@ -107,20 +107,21 @@ def test_failures_stand_in_order_and_lead_to_their_runs(campaign: Path) -> None:
     there = campaign / "again" / cell / "runs" / f"{int(number):04d}"
     there.mkdir(parents=True)
     (there / "birds_eye.png").write_bytes(b"")
-    write_store_report(campaign)
+    write_report(campaign)
     found = rows(campaign, "failures")
     assert [row["test"] for row in found] == [name for _, name in every[:30]]
     assert [float(row["outside at most"]) for row in found] == pytest.approx(
         [share for share, _ in every[:30]], abs=1e-4
     )
     page = (campaign / "report.html").read_text()
-    assert re.findall(r'href="(again[^"]+)"', page) == [f"again/{cell}/runs/{int(number):04d}/birds_eye.png"]
+    found = {*re.findall(r'href="(again[^"]+)"', page)}
+    assert found == {f"again/{cell}/runs/{int(number):04d}/birds_eye.png"}
     assert f"roadgpt view {campaign}/{every[0][1]}" in page
 
 
 def test_a_drive_that_ended_where_it_failed_has_no_margin_to_tell(campaign: Path) -> None:
     """It ends within a step of its lane's edge, whatever would have come: a number of no meaning."""
-    write_store_report(campaign)
+    write_report(campaign)
     text = words_of(campaign)
     assert not re.search(r"[-−]0\.0+\b", text)
     kept = [(r.margin, f"{c}/{r.number}") for c, r in drawn() if r.outcome == "PASS"]
@@ -135,12 +136,13 @@ def test_a_drive_that_ended_where_it_failed_has_no_margin_to_tell(campaign: Path
 def test_bars_and_cells_hold_every_test(campaign: Path) -> None:
     """The curve ends at all failures, and maps hold all tests that have features."""
     from roadgpt.campaign.columns.execution import columns
-    from roadgpt.campaign.record import Record
-    from roadgpt.report.campaign_report import _map, coverage
+    from roadgpt.report.chapters.roads import _counts, coverage
 
     with Record.opened(campaign) as record:
-        sums = _map(record, ("MAX_CURV", "DIR_COV"), columns.bounds, 1)
-        figures = coverage(record, 2 * TESTS)
+        sums = _counts(record, ("MAX_CURV", "DIR_COV"), columns.bounds, 1)
+        section = coverage([record])
+    assert section is not None
+    figures = section.blocks
     told = [r for _, r in drawn() if r.features]
     assert sums.sum() == len(told)
     theirs, _, _ = np.histogram2d(

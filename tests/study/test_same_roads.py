@@ -17,7 +17,7 @@ from roadgpt.campaign.record import Record, Store
 from roadgpt.campaign.single_test import FinishedTest
 from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
-from roadgpt.report import campaign_report
+from roadgpt.report.chapters import same_roads
 from roadgpt.report.page import write
 from roadgpt.report.page.model import Figure, Page
 from roadgpt.road import Design, Segment
@@ -77,13 +77,13 @@ def test_every_figure_is_that_of_others(
 
     drawn: list[tuple[int, tuple[int, int]]] = []
 
-    def figure(folder: Path, rank: int, road: Any, names: list[str], which: tuple[int, int]) -> Figure:
+    def figure(record: Record, rank: int, road: Any, names: list[str], which: tuple[int, int]) -> Figure:
         drawn.append((road[0].number, which))
         return Figure("x", "", "<svg/>")
 
-    monkeypatch.setattr(campaign_report, "_figure", figure)
+    monkeypatch.setattr(same_roads, "_figure", figure)
     with Record.opened(folder) as record:
-        said, section = campaign_report.compared(record), campaign_report.same_roads(folder, record)
+        section, said, _ = same_roads.same_roads(record)
     write(Page("", [], [section]), tmp_path)
     with (tmp_path / "tables" / "pairs-of-drivers.csv").open(encoding="utf-8") as file:
         rows = [*csv.DictReader(file)]

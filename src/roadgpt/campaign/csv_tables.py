@@ -1,4 +1,4 @@
-"""Writes the tables of a campaign; their bytes depend neither on the number of workers nor on interruptions.
+"""Makes the tables of a campaign; their bytes depend neither on the number of workers nor on interruptions.
 
 results.csv    one row per test: its proposal, its outcome, and its features
 cells.csv      one row per cell: its settings, the number of tests with each outcome, the number of bins of
@@ -7,16 +7,22 @@ cells.csv      one row per cell: its settings, the number of tests with each out
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from roadgpt.campaign.columns import bounds_of_columns, cell_of
+from roadgpt.campaign.folder_record import open_record
 from roadgpt.campaign.model import Cell
 from roadgpt.campaign.record import MEASURED, Record, reading_store
 from roadgpt.campaign.status import CellStatus, cell_statuses
+from roadgpt.errors import needed
 from roadgpt.reading import json_of
 from roadgpt.run import seed_of
 from roadgpt.run.atomic import csv_text, write_lines, write_whole
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 RESULTS, CELLS = "results.csv", "cells.csv"
 COLUMNS = (
@@ -43,19 +49,36 @@ OUTCOMES = {
 
 def write_tables(record: Record, folder: Path) -> None:
     """Writes both tables, row by row; raises OSError."""
-    features = record.feature_names()
     with reading_store(record.path):
-        by_name = {cell.name: cell for cell in record.cells()}
-        write_lines(folder / RESULTS, _lines(record.stream(EVERY), features, by_name))
+        heads, rows = _results(record)
+        write_lines(folder / RESULTS, (csv_text(each, ()) for each in chain([heads], rows)))
     both = zip(record.cells(), cell_statuses(record), strict=True)
     cells = [_cell_row(record, cell, status) for cell, status in both]
     write_whole(folder / CELLS, csv_text(cells[0], [row.values() for row in cells]))
 
 
-def _lines(
+def to_frame(folder: Path | str) -> "DataFrame":
+    """Returns the tests of a campaign, of a folder of runs or of one run as a pandas DataFrame: a row for
+    each test that has ended, and the columns of ``results.csv``. Those that end in ``_m`` are in metres,
+    shares are from 0 to 1, and those in capitals are the numbers of plug-ins ``columns`` in their units. What
+    a test lacks is NaN or None. Raises UsageError if pandas is not installed, or the folder has no tests."""
+    pandas = needed("pandas", "a table")
+    with open_record(Path(folder)) as record, reading_store(record.path):
+        heads, rows = _results(record)
+        frame: DataFrame = pandas.DataFrame.from_records([*rows], columns=heads)
+    return frame
+
+
+def _results(record: Record) -> tuple[tuple[str, ...], Iterator[tuple[Any, ...]]]:
+    """Returns the heads and the rows of ``results.csv``."""
+    features = record.feature_names()
+    cells = {cell.name: cell for cell in record.cells()}
+    return (*COLUMNS, *features), _rows(record.stream(EVERY), features, cells)
+
+
+def _rows(
     rows: Iterator[tuple[Any, ...]], features: Sequence[str], cells: Mapping[str, Cell]
-) -> Iterator[str]:
-    yield csv_text((*COLUMNS, *features), ())
+) -> Iterator[tuple[Any, ...]]:
     for cell, number, batch, origin, seed, given, *rest, found in rows:
         test, _, parameters = cells[cell].scenario_of(origin).partition(" ")
         if rest[MEASURED.index("cause")] == "collision":
@@ -63,7 +86,7 @@ def _lines(
         values = {name: float(value) for name, value in json_of(found).items()}
         named = (values.get(name) for name in features)
         own = seed if given else seed_of(seed, number)
-        yield csv_text((cell, number, batch, origin, test, parameters, own, *rest, *named), ())
+        yield cell, number, batch, origin, test, parameters, own, *rest, *named
 
 
 def _cell_row(record: Record, cell: Cell, status: CellStatus) -> dict[str, Any]:

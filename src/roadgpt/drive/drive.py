@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.errors import SimulationError, UsageError
+from roadgpt.errors import SimulationError, UsageError, needed
 from roadgpt.reading import arrays_in, json_of, strictly
 
 if TYPE_CHECKING:
+    from pandas import DataFrame
+
     from roadgpt.traffic import Tracks
 
 FloatArray = NDArray[np.float64]
@@ -206,6 +208,12 @@ class Drive:
         place = np.array([self["x"][step], self["y"][step]])
         turned: FloatArray = outline @ np.array([[c, s], [-s, c]]) + place
         return turned
+
+    def to_frame(self) -> "DataFrame":
+        """Returns the columns as a pandas DataFrame with a row for each step of 0.02 s; ``COLUMNS`` says the
+        unit of each: metres, seconds and radians. Raises UsageError if pandas is not installed."""
+        frame: DataFrame = needed("pandas", "a table").DataFrame({**self.columns})
+        return frame
 
     def to_bytes(self) -> bytes:
         """Returns the drive as a compressed .npz file; the same Drive gives the same bytes."""

@@ -1,5 +1,5 @@
-"""Collects the properties of each road for the reports: validity by each rule set, the results of the drive,
-and measured geometry. They are read or computed from the files of the road's run."""
+"""Collects the properties of each road for the reports: validity by each rule set, and measured geometry.
+They are computed from the roads of a Record."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -10,24 +10,26 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
-from roadgpt.campaign.columns import ToldNumber, features_in, told_of
+from roadgpt.campaign.folder_record import has_tests, open_record
+from roadgpt.campaign.model import MOST_TESTS, Cell, Result
+from roadgpt.campaign.record import Record
 from roadgpt.check import inspect
 from roadgpt.check.measures import measure
 from roadgpt.check.truth import Criterion, Truth, criteria_of
 from roadgpt.errors import RoadGPTError
 from roadgpt.report.canvas import FORMATS
 from roadgpt.report.similarity import Likeness, Spread, likeness, spread
-from roadgpt.road import Road
+from roadgpt.road import Road, World
 from roadgpt.run import Run
-from roadgpt.run.folder import finished, finished_run_in, slug, test_in
-from roadgpt.verdict import Verdict
+from roadgpt.run.folder import is_run
+from roadgpt.run.versions import Versions
 from roadgpt.verdict.verdict import DEPARTURES
 
 Array = NDArray[np.float64]
 
 MOST_COMPARED = 150  # roads of a part, each of which is compared with every other one
-LETTERS = 32  # of a description, in the name of its folder
 STRAIGHT = np.stack([np.linspace(0.0, 30.0, 31), np.zeros(31)], axis=1)
 """Points of a straight of 30 m. If there is no road, this straight is measured instead of the road, to learn
 which criteria a description mentions."""
@@ -37,62 +39,70 @@ which criteria a description mentions."""
 class RoadRecord:
     """The properties of one road, as used in reports."""
 
-    index: int
-    outcome: str
-    says: str  # the outcome as a sentence
+    result: Result
+    world: World | None  # None if there is no road
     is_valid: bool  # true if the road breaks no strict rule
     is_sound: bool
     """True if the road breaks no strict rule; the rule on the requirements of the description is ignored."""
-    is_sbft: bool  # true if the road passes the SBFT competition's validator
     sbft_says: str
     """The first reason why the SBFT competition's validator rejects the road, or "no road"; empty if it
     accepts the road."""
-    verdict: Verdict | None  # the result of the drive; None if the road was not driven
     points: Array  # points of the centre line ``(n, 2)``, metres, one every 2 m; empty if there is no road
     kept: Mapping[Criterion, bool]
     """For each criterion that the description mentions, True if the road meets it."""
     likeness: Likeness | None
     """The properties by which the road is compared with other roads; None if no road was made or it cannot
     be compared."""
-    features: Mapping[str, float] = field(default_factory=dict)
-    """Features of the SBFT competition's feature maps, by name; empty if they are not known."""
-    versions: Mapping[str, str] = field(default_factory=dict)
-    """Versions of RoadGPT and of the libraries that made the run, by name."""
-    friction: float | None = None  # friction coefficient of the road; None if it is not known
-    numbers: tuple[ToldNumber, ...] = ()  # those of the plug-ins ``columns`` that are told
+    href: str  # address of the road's bird's-eye view or run.json; empty if it has none
+    failed_at: tuple[float, float] | None  # middle of its lane where the car failed, x and y in metres
+
+    @property
+    def index(self) -> int:
+        """Number of the road in its cell, from 1."""
+        return self.result.number
+
+    @property
+    def is_sbft(self) -> bool:
+        """True if the road passes the SBFT competition's validator."""
+        return not self.sbft_says
 
     @property
     def is_driven(self) -> bool:
         """True if the road was driven and the drive was evaluated."""
-        return self.outcome in ("PASS", "FAIL")
+        return self.result.outcome in ("PASS", "FAIL")
 
     @property
     def has_left(self) -> bool:
         """True if the car left its lane or fell."""
-        return self.verdict is not None and self.verdict.cause in DEPARTURES
+        return self.result.cause in DEPARTURES
 
 
 @dataclass(frozen=True, eq=False)
 class RoadGroup:
-    """All roads that one designer made from one description."""
+    """The roads of one cell, or all that one designer made from one description."""
 
     designer: str
     words: str  # the description
-    roads: tuple[RoadRecord, ...]
+    roads: tuple[RoadRecord, ...] = ()
     truth: Truth | None = None
     """The requirements that people wrote down; None: roads are checked against those that the reader
     finds."""
-    number: int = 1  # of the description, counted from 1
     id: str = "1"  # of the description
-    home: str = ""  # group's folder, relative to the report's folder; empty if both folders are the same
+    name: str = ""  # the cell's; empty if there is one
+    overview: str = ""  # address of the picture of all roads, or of their table; empty if there is none
     problem: str = ""  # the reason why roads are missing; empty if none is missing
-    picture_format: str = ""  # format of the roads' pictures, such as "png"; empty if there are no pictures
     wanted: int = 1  # number of roads that the user requested
+    versions: Versions = field(default_factory=dict)
+    most_compared: int = MOST_COMPARED
 
     @property
-    def name(self) -> str:
-        """The name of the group, as of ``name_of``."""
-        return name_of(self.designer, self.number, self.words)
+    def size(self) -> float:
+        """Side of a square map that holds all roads, metres."""
+        return max((road.world.site.map_size for road in self.roads if road.world), default=1.0)
+
+    def name_of(self, road: RoadRecord) -> str:
+        """Returns the name of one of the roads."""
+        return f"{self.name}, road {road.index}" if self.name else f"road {road.index}"
 
     def count(self, which: str) -> int:
         """Returns the number of roads with a property of RoadRecord, such as "is_valid" or "has_left"."""
@@ -106,8 +116,8 @@ class RoadGroup:
 
     @cached_property
     def compared(self) -> tuple[RoadRecord, ...]:
-        """The roads that are compared with each other: the first 150 roads that can be compared."""
-        return tuple(road for road in self.roads if road.likeness is not None)[:MOST_COMPARED]
+        """The roads that are compared with each other: the first that can be compared."""
+        return tuple(road for road in self.roads if road.likeness is not None)[: self.most_compared]
 
     @cached_property
     def likenesses(self) -> list[Likeness]:
@@ -119,65 +129,76 @@ class RoadGroup:
         """How different the compared roads are; indices in the Spread refer to roads in ``compared``."""
         return spread(self.likenesses)
 
-    def href(self, road: RoadRecord) -> str:
-        """Returns the address of the road's bird's-eye view, or of its file run.json."""
-        is_drawn = self.picture_format and len(road.points)
-        name = f"birds_eye.{self.picture_format}" if is_drawn else "run.json"
-        return f"{self.home}/runs/{road.index:04d}/{name}".lstrip("/")
-
-    @property
-    def overview(self) -> str:
-        """The address of the picture of all roads of the group, or of the table of roads."""
-        name = f"overview.{self.picture_format}" if self.picture_format else "generation_stats.csv"
-        return f"{self.home}/{name}".lstrip("/")
-
-
-def name_of(designer: str, number: int, words: str) -> str:
-    """Returns the name of the roads that a designer makes from the description with this number, a path with
-    forward slashes."""
-    return f"{slug(designer)}/{number:02d}-{slug(words)[:LETTERS].strip('-')}"
-
 
 def read_group(place: Path, designer: str, words: str, truth: Truth | None = None, **more: Any) -> RoadGroup:
-    """Returns all roads of the folder of runs ``place``; ``more`` are further fields of the group."""
-    roads = tuple(
-        _record_of(finished_run_in(place, n), truth, _features(place, n))
-        for n in (finished(place) if place.is_dir() else [])
-    )
-    drawn = next((kind for kind in FORMATS if (place / f"overview.{kind}").is_file()), "")
-    return RoadGroup(designer, words, roads, truth, picture_format=drawn, **more)
+    """Returns all roads of the folder of runs ``place``; ``more`` are further fields of the group, of which
+    ``name`` is the way from the report's folder to this one."""
+    if not has_tests(place):
+        return RoadGroup(designer, words, truth=truth, **more)
+    with open_record(place) as record:
+        return group_of(record, record.cells()[0], words, truth=truth, home=more["name"], **more)
 
 
-def _record_of(run: Run, truth: Truth | None, features: Mapping[str, float]) -> RoadRecord:
-    road = run.road
-    sbft = inspect(road, None, run.world, "sbft") if road is not None else ()
+def group_of(
+    record: Record, cell: Cell, words: str, truth: Truth | None = None, home: str = "",
+    most: int = MOST_TESTS, **more: Any,
+) -> RoadGroup:  # fmt: skip
+    """Returns the roads of the first ``most`` tests of a cell. ``home`` is the way from the report's folder
+    to that of the record; ``more`` are further fields of the group."""
+    names = [*(f"overview.{kind}" for kind in FORMATS), "generation_stats.csv", "results.csv"]
+    drawn = next((name for name in names if (record.folder / name).is_file()), "")
+    results = record.results(cell.name, "tests.number <= ?", (most,))
+    roads = tuple(_road_of(record, cell, each, truth, home) for each in results)
+    setup = cell.request.setup
+    more |= {"overview": under(home, drawn), "versions": record.versions(setup.driver)}
+    return RoadGroup(setup.designer, words, roads, truth, **more)
+
+
+def under(home: str, name: str) -> str:
+    """Returns the address of a file in the folder ``home``; empty if there is no file."""
+    return f"{home}/{name}".lstrip("/") if name else ""
+
+
+def file_of(folder: Path, cell: str, number: int) -> str:
+    """Returns the address of the picture of a test from above, or of its Run; empty if neither is there."""
+    run = f"runs/{number:04d}/"
+    places = ("",) if is_run(folder) else (run, f"{cell}/{run}", f"again/{cell}/{run}")
+    names = [*(f"birds_eye.{kind}" for kind in FORMATS), "run.json"]
+    paths = [f"{place}{name}".replace("//", "/").lstrip("/") for place in places for name in names]
+    return next((path for path in paths if (folder / path).is_file()), "")
+
+
+def _road_of(record: Record, cell: Cell, result: Result, truth: Truth | None, home: str) -> RoadRecord:
+    road, request = record.road(cell, result) or (None, cell.request)
+    href = under(home, file_of(record.folder, cell.name, result.number))
+    brief = cell.of_test(result.proposal).brief
+    kept = _kept(road, brief, request.world, truth)
+    if road is None:
+        return RoadRecord(result, None, False, False, "no road", np.empty((0, 2)), kept, None, href, None)
+    is_checked = result.outcome == "INVALID" or brief is None  # others were driven because they break no rule
+    findings = inspect(road, brief, request.world, request.setup.rules) if is_checked else ()
+    sbft, at = inspect(road, None, request.world, "sbft"), None
+    if result.at_s is not None and result.cause in DEPARTURES:
+        x, y, _ = road.at(result.at_s, request.world.profile_of(road).middle(result.at_s)).tolist()
+        at = x, y
     return RoadRecord(
-        index=run.index,
-        outcome=run.outcome,
-        says=run.description,
-        is_valid=run.is_valid,
-        is_sound=road is not None and all(finding.rule == "promises" for finding in run.findings),
-        is_sbft=road is not None and not sbft,
-        sbft_says=sbft[0].sentence if sbft else "" if road is not None else "no road",
-        verdict=run.verdict,
-        points=road.centreline(2.0)[:, :2] if road is not None else np.empty((0, 2)),
-        kept=kept_of(run, truth),
-        likeness=_likeness(road),
-        features=features,
-        versions=run.versions,
-        friction=run.world.site.friction,
-        numbers=told_of(features_in(run, told_alone=True)),
-    )
+        result, request.world, not findings, all(finding.rule == "promises" for finding in findings),
+        sbft[0].sentence if sbft else "", road.centreline(2.0)[:, :2], kept, _likeness(road), href, at,
+    )  # fmt: skip
 
 
 def kept_of(run: Run, truth: Truth | None = None) -> dict[Criterion, bool]:
     """Returns, for each criterion of a description, whether the road of a run meets it; every value is False
     if no road was made. ``truth`` contains the requirements; if ``truth`` is None, the requirements that the
     reader found are used. Without any requirements, the result is empty."""
-    points = run.road.centreline() if run.road is not None else STRAIGHT
-    is_road = run.road is not None and bool(np.isfinite(points).all()) and len(points) > 1
+    return _kept(run.road, run.brief, run.world, truth)
+
+
+def _kept(road: Road | None, brief: Brief | None, world: World, truth: Truth | None) -> dict[Criterion, bool]:
+    points = road.centreline() if road is not None else STRAIGHT
+    is_road = road is not None and bool(np.isfinite(points).all()) and len(points) > 1
     points = points if is_road else STRAIGHT
-    read = outline(run.brief, run.world.site.map_size) if run.brief is not None else None
+    read = outline(brief, world.site.map_size) if brief is not None else None
     asked = truth.outline() if truth is not None else read
     if asked is None:
         return {}
@@ -185,18 +206,8 @@ def kept_of(run: Run, truth: Truth | None = None) -> dict[Criterion, bool]:
     return {criterion: good and is_road for criterion, good in criteria_of(found, asked).items()}
 
 
-def _likeness(road: Road | None) -> Likeness | None:
-    if road is None:
-        return None
+def _likeness(road: Road) -> Likeness | None:
     try:
         return likeness(road)
     except (RoadGPTError, FloatingPointError, ValueError):  # a broken road cannot be compared
         return None
-
-
-def _features(place: Path, number: int) -> dict[str, float]:
-    try:
-        found = test_in(place, number).get("features")
-        return {str(key): float(value) for key, value in (found or {}).items()}
-    except (OSError, ValueError, TypeError, AttributeError, OverflowError):
-        return {}

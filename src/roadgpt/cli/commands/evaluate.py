@@ -9,10 +9,10 @@ import click
 
 from roadgpt import plugins
 from roadgpt.cli import options
-from roadgpt.cli.options import PATH, Argument, GroupedCommand, named
+from roadgpt.cli.options import PATH, Argument, GroupedCommand, Option, named
 from roadgpt.cli.roads import LANES, UNREADABLE, each_road, open_page, roads_in
 from roadgpt.cli.screen import Row, Screen, row_of
-from roadgpt.errors import command_line
+from roadgpt.errors import UsageError, command_line
 
 if TYPE_CHECKING:
     from roadgpt.road import Design, Road, World
@@ -57,17 +57,26 @@ def check(files: tuple[str, ...], rules: Any, geometry: Any, verbose: bool, **re
     return UNREADABLE if "ERROR" in outcomes else INVALID if "INVALID" in outcomes else 0
 
 
-@click.command(cls=GroupedCommand, params=[Argument("folder", "DIR", kind=PATH), options.OPEN, options.JUNIT])
-def report(folder: Path, opens: bool, junit: Path | None) -> None:
-    """Write a report on a folder of runs, a campaign or a study.
+REPORT_OPTIONS = (
+    Argument("folder", "DIR", kind=PATH),
+    Option("--brief", "Write one page to print, brief.html, with the outcomes and the worst test.", bool),
+    options.OPEN,
+    options.JUNIT,
+)
+
+
+@click.command(cls=GroupedCommand, params=[*REPORT_OPTIONS])
+def report(folder: Path, brief: bool, opens: bool, junit: Path | None) -> None:
+    """Write a report on a run, a folder of runs, a campaign or a study.
 
     DIR is the folder that roadgpt run, roadgpt campaign or roadgpt study wrote. The command writes
     report.html and the tables as CSV and LaTeX into DIR. The page needs no network and no server, and links
     to the runs in DIR.
 
     \b
-    roadgpt report roadgpt-runs/an-uphill-road-with-3-turns-7 --open"""
-    page = write_report(folder)
+    roadgpt report roadgpt-runs/an-uphill-road-with-3-turns-7 --open
+    roadgpt report CAMPAIGN --brief"""
+    page = write_report(folder, brief)
     if junit is not None:
         from roadgpt.cli.junit import suites_of, write_junit
 
@@ -77,19 +86,19 @@ def report(folder: Path, opens: bool, junit: Path | None) -> None:
         open_page(page)
 
 
-def write_report(folder: Path) -> Path:
-    """Writes the report on a folder of runs, a campaign or a study; returns the path of the HTML page.
+def write_report(folder: Path, is_brief: bool = False) -> Path:
+    """Writes the report on a folder of tests or a study, or its brief page; returns the path of the page.
 
     A plug-in called ``reports`` is named after the file of the folders for which it writes the report."""
-    from roadgpt.campaign.folder_record import is_store
-    from roadgpt.report.campaign_report import write_store_report
-    from roadgpt.report.run_report import write_run_report
+    from roadgpt.report import brief_page, report
 
     for card in plugins.names("reports"):
         if (folder / card).is_file():
+            if is_brief:
+                raise UsageError(f"{folder} has no brief page; name one of the folders of runs in it")
             made: Path = plugins.find("reports", card)(folder)
             return made
-    write = write_store_report if is_store(folder) else write_run_report
+    write = brief_page.write_brief if is_brief else report.write_report
     return write(folder, command_of(folder))
 
 

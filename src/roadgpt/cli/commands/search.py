@@ -137,7 +137,7 @@ def work_to_the_end(
     if is_store(folder):
         with Record.opened(folder) as record:
             if record.plan().paired:
-                from roadgpt.report.campaign_report import compared
+                from roadgpt.report.chapters.same_roads import compared
 
                 page = write_report(folder)
                 if not given["quiet"]:

@@ -1,13 +1,14 @@
 """Makes the sections that show roads: the overview at the start of a report, thumbnails of roads, and
 feature maps."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from roadgpt.campaign.columns import bounds_of_columns
+from roadgpt.campaign.record import Record
 from roadgpt.plural import plural
-from roadgpt.report.chapters.wording import decimal, row
 from roadgpt.report.overview import Thumbnail
 from roadgpt.report.page.charts import AxisRange, heat, is_map
 from roadgpt.report.page.maps import gallery
@@ -18,8 +19,6 @@ from roadgpt.report.page.model import (
     FigureCard,
     Section,
     Table,
-    TableCell,
-    cell,
     linked,
 )
 from roadgpt.report.road_record import RoadGroup, RoadRecord
@@ -37,112 +36,93 @@ LABELS = {
     "STD_SA": "steering, standard deviation, degrees",
     "MEAN_LP": "mean distance to the lane's edge, m",
 }
-BOUNDS = {"MAX_CURV": (0.0, 0.07), "DIR_COV": (0.0, 1.0), "STD_SA": (0.0, 200.0), "MEAN_LP": (0.0, 2.5)}
-"""Smallest and largest value of each feature on the maps of studies; values beyond count at the edge."""
+SAMPLE = 100_000  # tests whose features are read, evenly spread
 
 
-def overview(parts: Sequence[RoadGroup], size: float) -> Section | None:
-    """Returns the section at the start of a report: a table of all groups that have roads, and one
-    picture with some roads for each of the first three; ``size`` is the side of the square map in metres."""
+def overview(parts: Sequence[RoadGroup], *tables: Table) -> Section:
+    """Returns the section at the start of a report: one picture with some roads for each of the first three
+    groups that have roads, and ``tables``."""
     made = [part for part in parts if part.roads]
-    if not made:
-        return None
-    heads = [
-        "description", "made by", "roads", "valid", "keep every word", "driven", "left the lane",
-        "nearest two plans, m", "near duplicates",
-    ]  # fmt: skip
-    note = (
-        "Nearest two plans: root mean square distance of the two most similar roads, after the best shift, "
-        "turn and mirroring. The sections below contain intervals, tests and every road."
-    )
-    table = Table("glance", "Roads by description", heads, [*map(_row, made)], note)
-    return Section("At a glance", [Cards([_card(part, size) for part in made[:SHOWN]]), table])
+    return Section("At a glance", [Cards([_card(part) for part in made[:SHOWN]]), *tables])
 
 
-def _card(part: RoadGroup, size: float) -> FigureCard:
+def _card(part: RoadGroup) -> FigureCard:
     first = sorted(part.roads, key=lambda road: (not road.has_left, road.index))[: SIDE * SIDE]
     chosen = sorted(first, key=lambda road: road.index)
     label = f"{plural(len(chosen), 'road')} of “{part.words}”"
-    picture = gallery([_thumbnail(part, road) for road in chosen], size, label, SIDE)
+    picture = gallery([_thumbnail(road) for road in chosen], part.size, label, SIDE)
     left, driven = part.count("has_left"), part.count("is_driven")
     said = f"The car left its lane on {left} of {driven}." if driven else "They were not driven."
     return FigureCard(part.words, picture, [f"{plural(len(part.roads), 'road')} by {part.designer}. {said}"])
 
 
-def _row(part: RoadGroup) -> list[TableCell]:
-    good, driven, several = part.kept("general"), part.count("is_driven"), len(part.compared) > 1
-    return row(
-        cell(part.words, href=part.overview),
-        part.designer,
-        len(part.roads),
-        part.count("is_valid"),
-        sum(good) if good else None,
-        driven or None,
-        part.count("has_left") if driven else None,
-        decimal(float(np.min(part.spread.nearest)) if several else None, 1),
-        len(part.spread.duplicates) if several else None,
-    )
+def _thumbnail(road: RoadRecord) -> Thumbnail:
+    its = road.result
+    return Thumbnail(road.index, its.outcome, road.points, road.failed_at, road.href, its.max_oob)
 
 
-def _thumbnail(part: RoadGroup, road: RoadRecord) -> Thumbnail:
-    verdict = road.verdict
-    left_at = verdict.at_xy if verdict is not None and road.has_left else None
-    max_oob = verdict.max_oob if verdict is not None else None
-    return Thumbnail(road.index, road.outcome, road.points, left_at, part.href(road), max_oob)
-
-
-def every_road(parts: Sequence[RoadGroup], size: float) -> Section:
+def every_road(parts: Sequence[RoadGroup]) -> Section:
     """Returns a section with thumbnails of the first roads of the first groups, which link to the roads'
-    bird's-eye views; ``size`` is the side of the square map in metres."""
+    bird's-eye views."""
     blocks: list[Block] = [
         "A dot is where a road starts, a cross where the car left it; “62 %” is a PASS with so much of "
         "the car outside its lane. Each leads to its bird's-eye view; "
         "roadgpt view shows it in 3-D with its drive."
     ]
-    for part in parts[:MOST_PARTS]:
+    for number, part in enumerate(parts[:MOST_PARTS], 1):
         if not part.roads:
             continue
-        shown = [_thumbnail(part, road) for road in part.roads[:MOST]]
+        shown = [_thumbnail(road) for road in part.roads[:MOST]]
         more = f" The first {MOST} of {len(part.roads)}." if len(part.roads) > MOST else ""
         caption = f"{part.designer}, “{part.words}”.{more}"
-        blocks.append(Figure(f"roads-{part.number}", caption, gallery(shown, size, caption)))
+        blocks.append(Figure(f"roads-{number}", caption, gallery(shown, part.size, caption)))
     return Section("Roads", blocks)
 
 
 def named_roads(parts: Sequence[RoadGroup], says: Callable[[RoadRecord], str]) -> list[Block]:
     """Returns a line with a link for each road for which ``says`` returns a sentence."""
     return [
-        [linked(f"{part.name}, road {road.index}", part.href(road)), f": {sentence}"]
+        [linked(part.name_of(road), road.href), f": {sentence}"]
         for part in parts
         for road in part.roads
         if (sentence := says(road))
     ]
 
 
-def coverage(parts: Sequence[RoadGroup]) -> Section | None:
-    """Returns feature maps of all roads of each designer; None if no road has features."""
-    blocks: list[Block] = []
-    for designer in dict.fromkeys(part.designer for part in parts):
-        roads = [road.features for part in parts if part.designer == designer for road in part.roads]
-        for pair in MAPS:
-            found = [[features[name] for name in pair] for features in roads if {*pair} <= {*features}]
-            if found:
-                (x0, x1), (y0, y1) = (BOUNDS[name] for name in pair)
-                x, y = np.clip(np.array(found), [x0, y0], [x1, y1]).T
-                counts, _, _ = np.histogram2d(y, x, CELLS, ((y0, y1), (x0, x1)))
-                lead = f"{designer}: {len(found)} roads in {{}} ({', '.join(pair)})."
-                blocks += feature_map("coverage", counts, pair, BOUNDS, "roads", lead)
-    if not blocks:
-        return None
-    says = "Cells of the competition's features that valid roads fall into; the stronger, the more roads."
-    return Section("Coverage", [says, *blocks])
+def coverage(records: Sequence[Record]) -> Section | None:
+    """Returns maps of the features of all tests, or of every n-th if more than SAMPLE are done; None if no
+    two of them lie apart."""
+    tests = sum(count for record in records for ((count,),) in [record.query("SELECT count(*) FROM details")])
+    every, bounds, blocks = max(1, -(-tests // SAMPLE)), bounds_of_columns(), list[Block]()
+    part = f" of every {every:,}th test" if every > 1 else ""
+    for pair in MAPS:
+        counts = sum((_counts(record, pair, bounds, every) for record in records), np.zeros((CELLS, CELLS)))
+        caption = f"Tests{part} by {pair[0]} and {pair[1]}: {{}} are filled; the stronger, the more tests."
+        blocks += feature_map("coverage", counts, pair, bounds, "tests", caption)
+    return Section("Feature map", blocks) if blocks else None
+
+
+def _counts(
+    record: Record, pair: tuple[str, str], bounds: Mapping[str, tuple[float, float]], every: int
+) -> NDArray[np.float64]:
+    (x0, x1), (y0, y1) = (bounds[axis] for axis in pair)
+    rows = record.query(
+        "SELECT CAST((x - ?) * ? AS INTEGER), CAST((y - ?) * ? AS INTEGER), count(*) FROM "
+        "(SELECT json_extract(features, ?) AS x, json_extract(features, ?) AS y FROM details "
+        "WHERE number % ? = 0 AND features IS NOT NULL) WHERE x IS NOT NULL AND y IS NOT NULL GROUP BY 1, 2",
+        (x0, CELLS / (x1 - x0), y0, CELLS / (y1 - y0), *(f"$.{axis}" for axis in pair), every),
+    )
+    out = np.zeros((CELLS, CELLS))
+    for column, line, count in rows:
+        out[min(max(line, 0), CELLS - 1), min(max(column, 0), CELLS - 1)] += count
+    return out
 
 
 def feature_map(
     name: str,
     counts: NDArray[np.float64],
     pair: tuple[str, str],
-    bounds: dict[str, tuple[float, float]],
+    bounds: Mapping[str, tuple[float, float]],
     what: str,
     caption: str,
 ) -> list[Block]:

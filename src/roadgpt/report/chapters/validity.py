@@ -1,5 +1,5 @@
-"""Makes the sections on validity by each rule set and on lane departures, and tells how far outside its lane
-the car was in tests that it passed."""
+"""Makes the section on validity by each rule set, and tells how far outside its lane the car was in passed
+tests."""
 
 import textwrap
 from collections.abc import Sequence
@@ -36,26 +36,22 @@ class Passed(NamedTuple):
     beyond: float  # largest distance of the car beyond the lane marking, metres
 
 
-def passed_roads(roads: Sequence[RoadRecord]) -> list[Passed]:
-    """Groups the passed roads by how far outside its lane the car was."""
-    kept = [road.verdict for road in roads if road.outcome == "PASS" and road.verdict is not None]
-    found = []
-    for name in SEVERITIES:
-        own = [verdict for verdict in kept if verdict.severity == name]
-        share = max((verdict.max_oob for verdict in own), default=0.0)
-        found.append(Passed(name, len(own), share, max((verdict.beyond for verdict in own), default=0.0)))
-    return found
-
-
-def passed_tests(record: Record) -> list[Passed]:
-    """Groups the passed tests in a campaign's database by how far outside its lane the car was."""
-    rows = record.query(
+def passed_tests(records: Sequence[Record]) -> list[Passed]:
+    """Groups the passed tests by how far outside its lane the car was."""
+    graded = (
         "SELECT (max_oob > ?) + (max_oob > ?), count(*), max(max_oob), max(beyond) FROM tests "
-        "WHERE outcome = 'PASS' AND max_oob IS NOT NULL GROUP BY 1",
-        (PARTLY, MOSTLY),
+        "WHERE outcome = 'PASS' AND max_oob IS NOT NULL GROUP BY 1"
     )
-    there = {SEVERITIES[at]: rest for at, *rest in rows}
-    return [Passed(name, *there.get(name, (0, 0.0, 0.0))) for name in SEVERITIES]
+    rows = [row for record in records for row in record.query(graded, (PARTLY, MOSTLY))]
+    return [
+        Passed(
+            name,
+            sum(count for at, count, *_ in rows if at == grade),
+            max((share for at, _, share, _ in rows if at == grade), default=0.0),
+            max((beyond or 0.0 for at, *_, beyond in rows if at == grade), default=0.0),
+        )
+        for grade, name in enumerate(SEVERITIES)
+    ]
 
 
 def outside_sentences(found: Sequence[Passed], world: World) -> list[str]:
@@ -151,7 +147,6 @@ SOUND = Kind("is_sound", "sound", "strict rules but for the words")
 SBFT = Kind("is_sbft", "sbft", "SBFT rules")
 KINDS = (STRICT, SOUND, SBFT)
 LEFT = Kind("has_left", of="is_driven")
-NOT_DRIVEN = "These roads were not driven."
 
 
 def source_of(designer: str, parts: Parts, kind: Kind) -> Source:
@@ -174,32 +169,19 @@ def validity(parts: Parts, every: Sequence[Source], compared: Sequence[Block] = 
         "the words kept. But for the words: the same without these requirements, which the thesis did not "
         "check. SBFT rules: what the validator of the SBFT tool competition says, quirks included."
     ]
-    blocks += [_forest("validity", "valid", every), _shares("validity", "valid", every)]
+    blocks += [shares_forest("validity", "that are valid", every), shares_table("validity", "valid", every)]
     missing = dict.fromkeys(f"{part.designer}: {part.problem}" for part in parts if part.problem)
     blocks += [f"Roads are missing: {sentence}." for sentence in missing]
     return Section("Validity", [*blocks, *compared, *folded("Invalid roads", named_roads(parts, _why))])
 
 
-def departures(
-    parts: Parts, every: Sequence[Source], compared: Sequence[Block] = (), aside: str = ""
-) -> Section:
-    """Returns the section on lane departures on valid roads, as ``validity`` does; ``aside`` says by which
-    other rules some of these roads are valid."""
-    blocks: list[Block] = [NOT_DRIVEN]
-    if every:
-        said = f"Drives on which the car left its lane, on roads that are valid by the strict rules{aside}."
-        blocks = [said, _forest("departures", "left", every), _shares("departures", "left", every), *compared]
-    blocks += outside_table(passed_roads([road for part in parts for road in part.roads]))
-    left = named_roads(parts, lambda road: road.says if road.has_left else "")
-    return Section("Leaving the lane", [*blocks, *folded("Drives that left", left)])
-
-
 def _why(road: RoadRecord) -> str:
     sbft = f"; SBFT: {road.sbft_says}" if road.sbft_says else ""
-    return "" if road.is_valid else road.says + sbft
+    return "" if road.is_valid else road.result.description + sbft
 
 
-def _forest(name: str, hit: str, every: Sequence[Source]) -> Figure:
+def shares_forest(name: str, which: str, every: Sequence[Source]) -> Figure:
+    """Returns the shares of roads ``which`` are counted, such as "that are valid", by prompt."""
     prompts = list(dict.fromkeys(count.prompt for source in every for count in source.counts))
     if len(prompts) > MOST_DRAWN:
         prompts = [ALL]
@@ -216,12 +198,12 @@ def _forest(name: str, hit: str, every: Sequence[Source]) -> Figure:
         )
         for prompt in prompts
     ]
-    caption = f"Share of roads {'that are valid' if hit == 'valid' else 'on which the car left its lane'}"
-    caption += ", by prompt; dots are shares, lines Wilson's 95 % intervals."
+    caption = f"Share of roads {which}; dots are shares, lines Wilson's 95 % intervals."
     return Figure(name, caption, forest(groups, [source.name for source in every], caption))
 
 
-def _shares(name: str, hit: str, every: Sequence[Source]) -> Table:
+def shares_table(name: str, hit: str, every: Sequence[Source]) -> Table:
+    """Returns the counts of the sources by prompt, with intervals."""
     rows: list[list[TableCell]] = []
     for source in every:
         for count in source.counts:

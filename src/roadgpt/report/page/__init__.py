@@ -20,7 +20,7 @@ from roadgpt.report.page.model import Page, Raw, Table
 from roadgpt.run.atomic import csv_text, refuse_links, write_whole
 
 HERE = Path(__file__).parent
-PAGE, TABLES = "report.html", "tables"
+PAGE, BRIEF, TABLES = "report.html", "brief.html", "tables"
 STYLE = HERE / "style.css"
 LATEX = {letter: f"\\{letter}" for letter in "&%$#_{}"} | {
     "\\": r"\textbackslash{}",
@@ -53,10 +53,11 @@ def write(page: Page, folder: Path | str) -> Path:
     return folder / PAGE
 
 
-def html_of(page: Page) -> str:
-    """Returns the whole page, to be written as UTF-8; the same Page gives the same text."""
+def html_of(page: Page, is_brief: bool = False) -> str:
+    """Returns the whole page, to be written as UTF-8; the same Page gives the same text. A brief one is laid
+    out for a sheet of A4."""
     style = STYLE.read_text(encoding="utf-8")
-    return _template().render(page=page, style=style)
+    return _template().render(page=page, style=style, is_brief=is_brief)
 
 
 @cache
