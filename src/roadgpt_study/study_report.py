@@ -12,13 +12,12 @@ from roadgpt.campaign.record import Record
 from roadgpt.plural import plural
 from roadgpt.reading import read_json
 from roadgpt.report.chapters.alignment import alignment
-from roadgpt.report.chapters.diversity import diversity
-from roadgpt.report.chapters.roads import coverage, every_road, overview
+from roadgpt.report.chapters.roads import overview
 from roadgpt.report.chapters.validity import LEFT, outside_sentences, passed_tests, source_of
 from roadgpt.report.chapters.wording import decimal, row
 from roadgpt.report.page import write
 from roadgpt.report.page.model import Page, Table, TableCell, cell
-from roadgpt.report.report import card_of, kept_and_alike, valid_sentence
+from roadgpt.report.report import card_of, comparisons_of, kept_and_alike, valid_sentence
 from roadgpt.report.road_record import RoadGroup, read_group
 from roadgpt.report.similarity import similarity
 from roadgpt.run import Request
@@ -83,8 +82,8 @@ def page_of(plan: StudyPlan, parts: Sequence[RoadGroup], records: Mapping[str, R
     left = departures(parts, plan.designers, passed, has_baseline=is_thesis)
     kept = alignment(parts, plan.designers, lambda asking: bootstrap(asking)[1])
     own = [valid, left, kept] if is_thesis else [kept, valid, *([left] if plan.setup.drives else [])]
-    first, features = _glance(parts), coverage([*records.values()])
-    own += [diversity(parts, [_between(parts)]), *([features] if features else []), every_road(parts)]
+    first = _glance(parts)
+    own += comparisons_of(parts, [*records.values()], [_between(parts)])
     requests = [
         Request(setup=plan.setup_of(name), world=plan.world, seed=plan.seed) for name in plan.designers
     ]

@@ -25,7 +25,7 @@ from roadgpt.report.chapters.validity import (
 )
 from roadgpt.report.chapters.wording import driver_names, near_and_far, percent, share_of
 from roadgpt.report.page import write
-from roadgpt.report.page.model import Page
+from roadgpt.report.page.model import Page, Section, Table
 from roadgpt.report.road_record import MOST_COMPARED, RoadGroup, group_of
 from roadgpt.road import World
 from roadgpt.road.world import oracle_in_words
@@ -70,15 +70,12 @@ def _page(record: Record, status: Status, command: str) -> Page:
     sources = [source_of(name, groups, kind) for kind in KINDS for name in designers]
     sources = [source for source in sources if source.total]
     said = [group for group in groups if any(road.kept for road in group.roads)]
-    feature_maps = coverage([record])
     sections = [
         outcomes(record, status, is_paired),
         *failures(record, status, drives_on),
         *([validity(groups, sources)] if sources else []),
         *([alignment(said, [*dict.fromkeys(group.designer for group in said)])] if said else []),
-        *([diversity(groups)] if any(len(group.compared) > 1 for group in groups) else []),
-        *([feature_maps] if feature_maps else []),
-        *([every_road(groups)] if any(group.roads for group in groups) else []),
+        *comparisons_of(groups, [record]),
     ]
     summary = summary_of(record, status, groups)
     if (measured := sum(len(group.roads) for group in groups)) < status.done:
@@ -91,6 +88,19 @@ def _page(record: Record, status: Status, command: str) -> Page:
     sections[:0] = [overview(groups)] * any(len(group.roads) > 1 for group in groups)
     title, lead = titles(status, first)
     return Page(title, summary, sections, card_of_tests(command, record, status, groups), lead)
+
+
+def comparisons_of(
+    parts: Sequence[RoadGroup], records: Sequence[Record], between: Sequence[Table] = ()
+) -> list[Section]:
+    """Returns the sections in which roads are compared and shown, as far as there are some. The tables
+    ``between`` compare roads of different descriptions."""
+    features = coverage(records)
+    return [
+        *([diversity(parts, between)] if any(len(part.compared) > 1 for part in parts) else []),
+        *([features] if features else []),
+        *([every_road(parts)] if any(part.roads for part in parts) else []),
+    ]
 
 
 def titles(status: Status, first: Request) -> tuple[str, str]:
