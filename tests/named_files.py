@@ -11,7 +11,7 @@ from click.testing import CliRunner, Result
 
 PATH = re.compile(re.escape(tempfile.gettempdir()) + r"/pytest-[^\s\"'`,;()<>|\\\x1b]+")
 WRITTEN = re.compile(r"\bwritten (?:to|into) (?!an? )([^\s,;]+)")
-CLASS = re.compile(r"(?<=\.py):\w+$")  # of a driver, PATH.py:CLASS
+CLASS = re.compile(r"(?<=\.py):\w+(:\w+=.*)?$")  # of a driver, PATH.py:CLASS:key=value
 TEST = re.compile(r"/c\d+(/\d+)?$")  # a cell or a test of a campaign is no file
 HINT = re.compile(r"\broadgpt [a-z].*|--[a-z-]+ \S+")  # commands to come may name what they will make
 

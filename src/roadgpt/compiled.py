@@ -11,7 +11,7 @@ import os
 import warnings
 from collections.abc import Callable
 from pathlib import Path
-from typing import IO, Any, TypeVar, cast
+from typing import Any, TypeVar, cast
 
 from roadgpt.reading import digest
 
@@ -87,12 +87,12 @@ COMPILING = "compiling the simulator for this machine, once after an installatio
 
 
 @functools.cache
-def _file(name: str) -> IO[str] | None:
-    """Returns a file that this process keeps open, beside the machine code; None if it can lock none."""
+def _file(name: str) -> int | None:
+    """Returns the number of a file that stays open, beside the machine code; None if none can be locked."""
     try:
         folder = Path(numba.core.caching.FunctionCache(_file.__wrapped__).cache_path)
         folder.mkdir(parents=True, exist_ok=True)
-        return None if fcntl is None else (folder / name).open("a")
+        return None if fcntl is None else os.open(folder / name, os.O_WRONLY | os.O_CREAT)
     except (OSError, RuntimeError):
         return None
 
@@ -104,12 +104,12 @@ class _Turn:
 
     def __enter__(self) -> None:
         self.depth += 1
-        if self.depth == 1 and (file := _file(BUSY)):
+        if self.depth == 1 and (file := _file(BUSY)) is not None:
             fcntl.flock(file, fcntl.LOCK_EX)
 
     def __exit__(self, *_: object) -> None:
         self.depth -= 1
-        if self.depth == 0 and (file := _file(BUSY)):
+        if self.depth == 0 and (file := _file(BUSY)) is not None:
             fcntl.flock(file, fcntl.LOCK_UN)
 
 
@@ -124,7 +124,7 @@ def _in_turn(compile_: Callable[..., Any], signature: Any) -> Any:
 def _is_first() -> bool:
     """Returns whether no other process that still runs has said that it compiles."""
     try:
-        if file := _file(SAID):
+        if (file := _file(SAID)) is not None:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError:
         return False

@@ -42,6 +42,8 @@ Guard = Callable[[str, str], str]
 
 def driver_guard(value: str, place: str) -> str:
     """Refuses a driver's file that a file in the working folder names, or whose path is relative."""
+    if "=" in value and place == OF_FOLDER:
+        return YOURSELF
     if ".py" not in value:
         return ""
     if place == OF_FOLDER:
@@ -380,8 +382,9 @@ def file(value: str) -> Path:
 
 
 def driver(value: str) -> str:
-    """Returns the value of --driver; for a driver's file, makes its path absolute and permits its code."""
-    if ".py" not in value:
+    """Returns the value of --driver; for a driver's file, makes its path absolute and permits its code, or
+    settings that are texts."""
+    if ".py" not in value and "=" not in value:
         return value
     from roadgpt.drive.loading import absolute_spec, permit
 
@@ -424,7 +427,8 @@ def ground(value: str) -> str:
 def drivers(value: str) -> tuple[str, ...]:
     """Returns the drivers in a value of --drivers, separated by commas, as ``driver`` does."""
     is_file = Path(f"{value.rpartition('.py')[0]}.py").is_file()  # whose path may have commas
-    return tuple(driver(name.strip()) for name in ((value,) if is_file else value.split(",")))
+    names = (value,) if is_file else re.split(r",(?!\s*\w+=)", value)  # a comma may separate settings
+    return tuple(driver(name.strip()) for name in names)
 
 
 def _road_format(name: str) -> str:

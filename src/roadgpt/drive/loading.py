@@ -1,17 +1,22 @@
 """Loads a driver, a plug-in by its name or a class in a user's own file such as ``my_driver.py:MyDriver``,
-and decides which may be run. If only a stored file, such as a run's ``run.json``, names a driver's file, the
+and decides which may be run. Settings may follow, as in ``lane_centring:lag=0.4,headway=1.5``: arguments of
+the driver's constructor. If only a stored file, such as a run's ``run.json``, names a driver's file, the
 driver's code is not run until the user names the driver or agrees. The same holds for the file of recorded
 tracks of others: it is not read.
 
-Plug-ins need no permission, because the user has installed them."""
+Plug-ins need no permission, because the user has installed them, unless a setting is a text: it may name a
+file that the driver loads."""
 
 import hashlib
 import importlib.util
 import inspect
+import re
 import shlex
 import sys
 import traceback
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
+from math import isfinite
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -21,15 +26,44 @@ from roadgpt.errors import UsageError
 from roadgpt.provenance import CODE, USER
 
 RECORDINGS = (".csv", ".xosc")  # suffixes of files with recorded tracks
+WITH_SETTINGS = re.compile(r"(.+\.py(?::\w+)?|[^:]+):(\w+=.*)", re.DOTALL)
+READERS: Mapping[str, Callable[[str], Any]] = {
+    "bool": {"true": True, "false": False}.__getitem__,
+    "None": {"none": None}.__getitem__,
+    "int": int,
+    "float": float,
+    "str": str,
+}
+"""What reads a setting, by the name of its type."""
+GIVE = {
+    "bool": "true or false",
+    "None": "none",
+    "int": "a whole number",
+    "float": "a number",
+    "str": "a text",
+}
+
+
+def without_settings(spec: str) -> tuple[str, str]:
+    """Splits NAME:key=value,key=value into the driver and its settings; they are empty if there are none."""
+    found = WITH_SETTINGS.fullmatch(spec)
+    return (found[1], found[2]) if found else (spec, "")
 
 
 def split_spec(spec: str) -> tuple[str, str]:
-    """Splits PATH.py:CLASS into path and class; returns two empty strings for the name of a plug-in. Recorded
-    tracks have a path and no class."""
+    """Splits PATH.py:CLASS into path and class, without settings; returns two empty strings for the name of a
+    plug-in. Recorded tracks have a path and no class."""
+    spec, _ = without_settings(spec)
     if spec.endswith((".py", *RECORDINGS)):
         return spec, ""
     path, _, wanted = spec.rpartition(":")
     return (path, wanted) if path.endswith(".py") else ("", "")
+
+
+def needs_permission(spec: str) -> bool:
+    """Returns whether the user has to name this driver, or these recorded tracks, before they are used."""
+    texts = [each.partition("=")[2] for each in without_settings(spec)[1].split(",")]
+    return bool(split_spec(spec)[0]) or any(_converted(text, READERS) == text for text in texts if text)
 
 
 def permit(spec: str) -> None:
@@ -38,7 +72,7 @@ def permit(spec: str) -> None:
     A run that was made on another machine names the driver by a path that does not exist on this machine.
     Drivers with the same file name and the same class therefore count as the same driver, and the file that
     the user named is run."""
-    if split_spec(spec)[0]:
+    if needs_permission(spec):
         CODE.add_from_user(_whole(spec))
         CODE.add_from_user(without_folder(spec), spec)
 
@@ -46,7 +80,7 @@ def permit(spec: str) -> None:
 def driver_from_file(spec: str, file: object) -> str:
     """Returns the driver to use where a stored file names ``spec``. If the user has named a driver with the
     same file name and class, the result is the user's driver; otherwise the result is ``spec``."""
-    if not split_spec(spec)[0] or CODE.given_as(_whole(spec)):
+    if not needs_permission(spec) or CODE.given_as(_whole(spec)):
         return spec
     theirs = CODE.given_as(without_folder(spec))
     if theirs is None:
@@ -57,7 +91,7 @@ def driver_from_file(spec: str, file: object) -> str:
 def require_permission(spec: str) -> None:
     """Permits a driver's file to be run, or recorded tracks to be read. If it is named only in a stored file,
     the user is first asked for permission."""
-    if not split_spec(spec)[0]:
+    if not needs_permission(spec):
         return
     file = CODE.untrusted_file(_whole(spec))
     if file is not None and spec.endswith(RECORDINGS):
@@ -86,13 +120,18 @@ def check_named_drivers(specs: Iterable[str], drivers: set[str], place: object) 
 
 def _whole(spec: str) -> str:
     path, wanted = split_spec(spec)
-    return f"{Path(path).absolute()}:{wanted}" if path else spec
+    return f"{Path(path).absolute()}:{wanted}{_behind(spec)}" if path else spec
+
+
+def _behind(spec: str) -> str:
+    driver, settings = without_settings(spec)
+    return spec[len(driver) :] if settings else ""
 
 
 def without_folder(spec: str) -> str:
     """Returns FILE.py:CLASS without the file's folder; the name of a plug-in is returned unchanged."""
     path, wanted = split_spec(spec)
-    return f"{path.replace(chr(92), '/').rpartition('/')[2]}:{wanted}" if path else spec
+    return f"{path.replace(chr(92), '/').rpartition('/')[2]}:{wanted}{_behind(spec)}" if path else spec
 
 
 def load_driver(spec: str) -> Any:
@@ -104,7 +143,7 @@ def load_driver(spec: str) -> Any:
     require_permission(spec)
     path, wanted = split_spec(spec)
     if not path:
-        return _made(plugins.find("drivers", spec), spec)
+        return _made(plugins.find("drivers", without_settings(spec)[0]), spec)
     module = _run(Path(path))
     return _made(_class(module, wanted, path), spec)
 
@@ -117,7 +156,7 @@ def absolute_spec(spec: str, folder: Path) -> str:
     if not path:
         return spec
     whole = (folder / path).absolute()
-    return f"{whole}:{wanted}" if wanted else str(whole)
+    return f"{whole}:{wanted}{_behind(spec)}" if wanted else f"{whole}{_behind(spec)}"
 
 
 def _run(path: Path) -> ModuleType:
@@ -164,19 +203,53 @@ def _class(module: ModuleType, wanted: str, path: str) -> Any:
 def _made(driver: Any, spec: str) -> Any:
     if not callable(getattr(driver, "steer", None)):
         raise UsageError(f"the driver {spec} has no method steer(self, view): add it")
+    settings = _settings(driver, *without_settings(spec))
     if inspect.isclass(driver):
         try:
-            driver = driver()
+            driver = driver(**settings)
         except (Exception, SystemExit) as error:
+            how = "with these settings" if settings else "without arguments"
             raise UsageError(
-                f"the driver {spec} cannot be made without arguments: {_said(error)}; "
-                "give its parameters defaults"
+                f"the driver {spec} cannot be made {how}: {_said(error)}; give its parameters defaults"
             ) from error
     try:
         inspect.signature(driver.steer).bind(None)
     except TypeError as error:
         raise UsageError(f"the driver {spec}: steer must take one argument, the view ({error})") from error
     return driver
+
+
+def _settings(driver: Any, name: str, said: str) -> dict[str, Any]:
+    """Returns settings by name, each with a type that the driver's constructor names, or that of its default.
+    Raises UsageError if there is no such setting, or it cannot have this value."""
+    if not said:
+        return {}
+    found, kinds = dict[str, Any](), dict[str, list[str]]()
+    for each in inspect.signature(driver).parameters.values() if inspect.isclass(driver) else ():
+        kind = type(each.default) if each.annotation is each.empty else each.annotation
+        words = re.findall(r"\w+", kind if isinstance(kind, str) else inspect.formatannotation(kind))
+        if own := [kind for kind in READERS if kind in words]:
+            kinds[each.name] = own
+    for key, _, text in (each.strip().partition("=") for each in said.split(",")):
+        if key not in kinds:
+            there = f"it has {', '.join(kinds)}" if kinds else "it has none"
+            raise UsageError(f"the driver {name} has no setting '{key}'; {there}")
+        try:
+            found[key] = _converted(text, kinds[key])
+        except ValueError:
+            what = " or ".join(GIVE[kind] for kind in kinds[key])
+            raise UsageError(f"the driver {name} cannot have {key}={text}; give {what}") from None
+    return found
+
+
+def _converted(text: str, kinds: Iterable[str]) -> Any:
+    """Returns a text as the first of these types that it fits; raises ValueError if it fits none."""
+    for kind in kinds:
+        with suppress(KeyError, ValueError):
+            value = READERS[kind](text)
+            if not isinstance(value, float) or isfinite(value):
+                return value
+    raise ValueError(text)
 
 
 def _said(error: BaseException) -> str:

@@ -13,7 +13,7 @@ from roadgpt.brief.scenarios import scenario
 from roadgpt.chat import ChatSettings, Spent
 from roadgpt.check import Finding
 from roadgpt.design import DesignReport
-from roadgpt.drive.loading import driver_from_file, split_spec
+from roadgpt.drive.loading import driver_from_file, needs_permission
 from roadgpt.errors import GivenUpError, UsageError
 from roadgpt.road import Design, Road, World
 from roadgpt.road.world import Parts
@@ -67,7 +67,7 @@ class Setup(Parts):
 def permissions(setups: Sequence[Setup], asks: bool = False, replays: bool = False) -> list[str]:
     """Returns the options that permit drivers' files, servers if a command ``asks`` language models, and
     recorded tracks if it ``replays`` them."""
-    pairs = [("--driver", setup.driver) for setup in setups if split_spec(setup.driver)[0]]
+    pairs = [("--driver", setup.driver) for setup in setups if needs_permission(setup.driver)]
     chats = [setup.chat for setup in setups if setup.chat and asks]
     pairs += [("--base-url", chat.base_url) for chat in chats if chat.base_url]
     pairs += [("--tracks", setup.tracks) for setup in setups if setup.tracks and replays]

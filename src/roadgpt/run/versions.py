@@ -24,6 +24,7 @@ from typing import Any
 from roadgpt import __version__, brief, plugins
 from roadgpt.drive.driver_files import WRITTEN, folder_of
 from roadgpt.drive.isolation import driver_of
+from roadgpt.drive.loading import without_settings
 from roadgpt.errors import UsageError
 from roadgpt.reading import ABSENT, digest
 from roadgpt.run.model import Request, Setup
@@ -63,7 +64,11 @@ def versions_of(setups: Sequence[Setup], driver: Any = None, generators: Iterabl
         weights = Path(place or Path(brief.__file__).parent / "readers" / "model" / "weights")
         found |= {"weights": digest(weights)} if reader == "model" and weights.is_dir() else {}
         used |= {("readers", reader), ("designers", its.designer)}
-        used |= {("simulators", its.simulator), ("drivers", its.driver)} if its.drives else set()
+        used |= (
+            {("simulators", its.simulator), ("drivers", without_settings(its.driver)[0])}
+            if its.drives
+            else set()
+        )
     modules = {part: plugins.module_of(*part).partition(".")[0] for part in used}
     others = {_plugin(*part, module) for part, module in modules.items() if module not in ("", "roadgpt")}
     found["plug-ins"] = ", ".join(sorted(others)) or "none"

@@ -58,9 +58,9 @@ CAMPAIGN_OPTIONS = (
     *options.WORKERS,
     *(options.PLAN, *named(options.SETUP, "reader", "designer")),
     Option("--driver --drivers drivers", "Name of a driver, or FILE.py:CLASS; for more drivers, repeat the "
-           "option or separate them by commas. If FILE.toml lists a driver file, RoadGPT runs it only if you "
-           "name it here, too.", options.drivers, ("lane_centring",), multiple=True, heading=Heading.DRIVE,
-           table="run", guard=options.driver_guard,
+           "option or separate them by commas: a,b:key=value. If FILE.toml lists a driver file, RoadGPT runs "
+           "it only if you name it here, too.", options.drivers, ("lane_centring",), multiple=True,
+           heading=Heading.DRIVE, table="run", guard=options.driver_guard,
            callback=lambda _, __, given: tuple(chain.from_iterable(given))),
     Option("--paired", "Compare the drivers on the same roads at the end, in a report.", bool,
            heading=Heading.DRIVE),

@@ -10,7 +10,7 @@ its own drive fails. One process serves many drives, one after another; the driv
 from typing import Any
 
 from roadgpt import plugins
-from roadgpt.drive.loading import load_driver, require_permission, split_spec
+from roadgpt.drive.loading import load_driver, require_permission, split_spec, without_settings
 
 OURS = "roadgpt."  # prefix of the modules whose drivers run in this process, beside the simulator
 
@@ -20,10 +20,11 @@ def driver_of(spec: str) -> Any:
     separate process.
 
     If only a stored file (of a run, a campaign or a plan) names a driver's file, the driver runs only after
-    the user has agreed (see ``drive.loading``). ``spec`` names a driver plug-in, or is PATH.py:CLASS."""
+    the user has agreed (see ``drive.loading``). ``spec`` names a driver plug-in, or is PATH.py:CLASS;
+    settings may follow."""
     require_permission(spec)
     path, _ = split_spec(spec)
-    module = "" if path else plugins.module_of("drivers", spec)
+    module = "" if path else plugins.module_of("drivers", without_settings(spec)[0])
     if not path and (not module or module.startswith(OURS)):  # load_driver reports an unknown plug-in
         return load_driver(spec)
     from roadgpt.drive.isolation.proxy import IsolatedDriver  # RoadGPT's own drivers need no process
