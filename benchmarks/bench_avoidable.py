@@ -29,7 +29,7 @@ from roadgpt.brief.scenarios import LANE_WIDTH, chosen
 from roadgpt.road import World
 from roadgpt.run import Setup, perform
 from roadgpt.verdict.avoidable import FINE
-from roadgpt.verdict.careful import DRIVERS, Driver, Moment, drive_on
+from roadgpt.verdict.careful import DRIVERS, DriverModel, Moment, drive_on
 
 STEP, LENGTH, WIDTH, BESIDE = 0.1, 4.3, 1.9, 3.5  # s, m; the other begins in the middle of the next lane
 WANDERS, EVALUATED = 0.375, 0.4  # m, s
@@ -44,7 +44,7 @@ def cells() -> list[Cell]:
     return [(own / 3.6, (own - less) / 3.6, gap, n / 2) for own, less, gap, n in grid if less <= own]
 
 
-def theirs(driver: Driver, cell: Cell, models: Any, movement: Any) -> tuple[bool, Any]:
+def theirs(driver: DriverModel, cell: Cell, models: Any, movement: Any) -> tuple[bool, Any]:
     """Whether the car of the other program collides, and how the other moved in it."""
     own, its, gap, lateral = cell
     steps, often = 350, 10
@@ -61,7 +61,7 @@ def theirs(driver: Driver, cell: Cell, models: Any, movement: Any) -> tuple[bool
     return bool(car.crash), other
 
 
-def ours(driver: Driver, own: float, other: Any, as_text: bool = False, step: float = STEP) -> bool:
+def ours(driver: DriverModel, own: float, other: Any, as_text: bool = False, step: float = STEP) -> bool:
     """Whether our driver collides with the other, who moved so; ``as_text``: perceived as R157 says. Between
     the other's steps it moves evenly."""
     names = ("pos_profile_long", "pos_profile_lat", "speed_profile_long", "speed_profile_lat")

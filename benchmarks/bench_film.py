@@ -16,7 +16,7 @@ from pathlib import Path
 
 from roadgpt.road import Design, Segment, World
 from roadgpt.run import Run, prove
-from roadgpt.scene import Camera, Pose, Scene
+from roadgpt.scene import Camera, Pose, Scenery
 from roadgpt_film.film import Film, Settings, write_film
 
 SECONDS = float(sys.argv[1]) if sys.argv[1:] else 9.0
@@ -44,7 +44,7 @@ def rates(run: Run) -> None:
     """Pictures per CPU second."""
     assert run.road is not None
     assert run.drive is not None
-    scene, drive = Scene.of(run.road, World()), run.drive
+    scene, drive = Scenery.of(run.road, World()), run.drive
     steps = [int(k * (len(drive) - 1) / POSES) for k in range(POSES)]
     names = ("x", "y", "z", "heading", "pitch", "roll")
     poses = [Pose(*(float(drive[name][step]) for name in names)) for step in steps]
@@ -57,7 +57,7 @@ def rates(run: Run) -> None:
         print(f"| {size[0]} x {size[1]} | {found[0]:.0f} | {found[1]:.0f} |")
 
 
-def _rate(scene: Scene, camera: Camera, poses: list[Pose], has_car: bool) -> float:
+def _rate(scene: Scenery, camera: Camera, poses: list[Pose], has_car: bool) -> float:
     def all_poses() -> None:
         for pose in poses:
             scene.render(camera, pose, car=pose if has_car else None)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from roadgpt.check.measures import Measures, measure
+from roadgpt.check.measures import RoadMeasures, measure
 from roadgpt.road import Design, build, read_design
 
 HERE = Path(__file__).parent / "edit"
@@ -31,7 +31,7 @@ def requests() -> list[dict[str, Any]]:
 
 def ours(points: Any) -> Described:
     """A road as check.measures sees it."""
-    found: Measures = measure(points)
+    found: RoadMeasures = measure(points)
     features = [
         {
             "kind": f.kind,

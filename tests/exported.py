@@ -15,7 +15,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 import pytest
 
-from roadgpt.export import Others, Poses
+from roadgpt.export import Poses, Trajectories
 from roadgpt.road import Design, Limits, Road, Segment, Site, World, build
 from roadgpt.traffic import SIZES, Actor, Tracks
 
@@ -89,7 +89,7 @@ def among_others() -> tuple[Poses, Tracks]:
     actors = tuple(Actor(f"{kind} {n}", kind, SIZES[kind]) for n, kind in enumerate(KINDS))
     states[..., :3], states[..., 3] = np.round(states[..., :3], 3), np.round(states[..., 3], 4)
     sizes = np.array([actor.size for actor in actors])
-    others = Others(tuple(actor.name for actor in actors), KINDS, sizes, time, states)
+    others = Trajectories(tuple(actor.name for actor in actors), KINDS, sizes, time, states)
     return replace(poses, others=others), Tracks(actors, states)
 
 

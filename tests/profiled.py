@@ -4,7 +4,7 @@ import numpy as np
 
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.road import CrossSection, Design, Profile, Road, Segment, World, build
-from roadgpt.road.profile import Lane, superelevation
+from roadgpt.road.profile import LaneStrip, superelevation
 
 LANES = ("1+1", "2+1", "2+2", "3+2", "1+0", "2+0", "3+1")
 BANKS = (None, 0.025, 0.05, 0.08)
@@ -30,7 +30,7 @@ def random_road(seed: int, steepest: float = 8.0) -> Road:
             (0.0, road.length / 3, road.length / 2),
             ((0.0, 0.0, 0.0, 0.0), taper(0.0, 3.0, road.length / 6), (3.0, 0.0, 0.0, 0.0)),
         )
-        right = (*profile.right[:forward], Lane("driving", begins, "solid"), *profile.right[forward:])
+        right = (*profile.right[:forward], LaneStrip("driving", begins, "solid"), *profile.right[forward:])
         profile = Profile(profile.left, right, profile.driven, profile.centre_marking)
     bank = BANKS[seed % len(BANKS)] if seed % 8 else World(section=CrossSection(bank="auto"))
     if bank is None:
@@ -83,8 +83,8 @@ def bend(radius: float, width: float = 3.5, side: int = -1, lanes: int = 2, ends
     k = side / radius
     plan = PieceCurve(100.0, 100.0, 0.3, (Piece(30.0), Piece(np.pi / 2 * radius, k, k), Piece(40.0)))
     narrowing = CubicProfile.smooth([(0.0, width), (20.0, width), (28.0, 0.0), (plan.length, 0.0)])
-    right = [Lane("driving", width, "broken")] * (lanes - 1) + [
-        Lane("driving", narrowing if ends else width, "solid")
+    right = [LaneStrip("driving", width, "broken")] * (lanes - 1) + [
+        LaneStrip("driving", narrowing if ends else width, "solid")
     ]
-    profile = Profile((Lane("driving", width, "solid"),), tuple(right))
+    profile = Profile((LaneStrip("driving", width, "solid"),), tuple(right))
     return Road(plan, GradeProfile.level(plan.length), profile=profile)

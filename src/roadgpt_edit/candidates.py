@@ -27,12 +27,12 @@ from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import KINDS, LEAST_STRAIGHT
-from roadgpt.check.measures import Measures, way
+from roadgpt.check.measures import RoadMeasures, way
 from roadgpt.design.elements import straight
 from roadgpt.errors import EditError, IdleEditError, UsageError
 from roadgpt.road import Design, Geometry, World, build
 from roadgpt.road.design import MAX_SEGMENTS
-from roadgpt_edit.fit import Look, Requirements, fit, graded
+from roadgpt_edit.fit import FittedRoad, Requirements, fit, graded
 from roadgpt_edit.onto_map import moved_onto_map
 from roadgpt_edit.places import PlacedChange, is_beyond, straights, turns
 from roadgpt_edit.road_elements import RoadElement, RoadElements, elements_on_road, gap, joined, numbered
@@ -310,7 +310,7 @@ class ChangeCandidates(NamedTuple):
 
 
 def candidates_of(
-    changes: Sequence[PlacedChange], elements: RoadElements, found: Measures, world: World, first: int = 1
+    changes: Sequence[PlacedChange], elements: RoadElements, found: RoadMeasures, world: World, first: int = 1
 ) -> tuple[ChangeCandidates, ...]:
     """Returns the ways to make each change of a stage on a road with these elements and measurements.
 
@@ -353,7 +353,7 @@ def sentence_of(asked: PlacedChange, before: RoadElements, placed: PlacedChange,
 def _ways(
     placed: PlacedChange,
     elements: RoadElements,
-    found: Measures,
+    found: RoadMeasures,
     world: World,
     number: int,
     sides: Sequence[Side | None],
@@ -391,7 +391,7 @@ def _ways(
 
 
 def _change_candidates(
-    change: Change, elements: Sequence[RoadElement], found: Measures, world: World
+    change: Change, elements: Sequence[RoadElement], found: RoadMeasures, world: World
 ) -> tuple[EditCandidate, ...]:
     is_road = change.is_of_road
     if change.bound and change.what == "length" and is_road:
@@ -562,7 +562,7 @@ def made(
     world: World,
     geometry: Geometry,
     may_grow: bool,
-) -> tuple[Look, Design]:
+) -> tuple[FittedRoad, Design]:
     """Returns the road with all changes, and a design in which only the elements named in them changed. A
     change without candidates is not needed; ``elements`` are those of the road before the stage, and
     ``may_grow`` says whether the map may become larger. If it has no room for the road and may not grow,
@@ -594,7 +594,7 @@ def made(
 
 
 def _refuse_broken_limits(
-    idle: Sequence[ChangeCandidates], needed: Sequence[ChangeCandidates], road: Look, geometry: Geometry
+    idle: Sequence[ChangeCandidates], needed: Sequence[ChangeCandidates], road: FittedRoad, geometry: Geometry
 ) -> None:
     for limit in idle:
         own = {element.name for element in limit.placed.elements}
@@ -610,10 +610,10 @@ def _refuse_broken_limits(
 
 def _drafts(
     elements: RoadElements, changes: Sequence[ChangeCandidates], plain: Requirements
-) -> tuple[list[Look], str]:
+) -> tuple[list[FittedRoad], str]:
     """Returns the roads of combinations of candidates, up to the first one that is valid and as requested,
     and what was wrong with the first one tried; elements that the request does not name are frozen."""
-    objection, drafts, world, design = "", list[Look](), plain.world, plain.before
+    objection, drafts, world, design = "", list[FittedRoad](), plain.world, plain.before
     assert design is not None
     for steps in islice(_combined(changes), MOST_TRIALS):
         try:
@@ -636,7 +636,7 @@ def _frozen(elements: RoadElements) -> set[str]:
     return {element.name for element in elements if not element.may_bend}
 
 
-def _on_larger_map(drafts: Sequence[Look], world: World) -> list[Look]:
+def _on_larger_map(drafts: Sequence[FittedRoad], world: World) -> list[FittedRoad]:
     for draft in drafts:
         if not any(finding.rule == INSIDE_MAP for finding in draft.findings):
             continue

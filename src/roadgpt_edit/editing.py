@@ -1,9 +1,9 @@
 """Edits a Design as a change request asks, and leaves the rest unchanged. Main function: ``edit``.
 
     words --checked_request--> EditRequest --placed, settled--> PlacedChanges
-          --candidates_of--> ChangeCandidates --made--> Look --sentences--> Edited
+          --candidates_of--> ChangeCandidates --made--> FittedRoad --sentences--> Edited
 
-A Look is a Design with the road that was built from it, the findings of the rules, and measurements. Turns
+A FittedRoad is a Design with the road built from it, the findings of the rules, and measurements. Turns
 and straights are those that ``check.measures`` finds on the finished road. They are numbered as on the road
 before the edit. Elements that the request does not name keep all their values, but the road as a whole may be
 shifted or rotated, so that it stays inside the map.
@@ -44,12 +44,12 @@ from roadgpt.brief.change.staging import changed_scene
 from roadgpt.brief.readers.model.trained import DOUBT
 from roadgpt.brief.scene import land_remark, parts_said, scene_text
 from roadgpt.chat import ChatSettings
-from roadgpt.check.measures import MeasuredFeature, Measures, ups_and_downs, way
+from roadgpt.check.measures import MeasuredFeature, RoadMeasures, ups_and_downs, way
 from roadgpt.errors import EditError, IdleEditError, UnclearPlaceError
 from roadgpt.language.table import SURFACES
 from roadgpt.road import Design, Geometry, Segment, Site, World, build
 from roadgpt_edit.candidates import RENAMED, candidates_of, made, sentence_of
-from roadgpt_edit.fit import Look
+from roadgpt_edit.fit import FittedRoad
 from roadgpt_edit.places import PlacedChange, placed
 from roadgpt_edit.road_elements import RoadElement, RoadElements, elements_on_road, features_of
 from roadgpt_edit.ways import NEW, STRAIGHT
@@ -64,13 +64,13 @@ FADING = 12.0  # m that a straight gains at most from turns that fade into it
 def sentences(
     before: Design,
     elements: RoadElements,
-    found: Measures,
-    after: Look,
+    found: RoadMeasures,
+    after: FittedRoad,
     fitted: Sequence[tuple[Design, Design]] = (),
 ) -> tuple[str, ...]:
     """Returns a sentence for each turn and straight that has changed, and for the road as a whole.
 
-    ``elements`` and ``found`` are those of the road before the edit. If the Look at the road after the edit
+    ``elements`` and ``found`` are those of the road before the edit. If the FittedRoad after the edit
     has no elements, the sentences give the number of turns before and after the edit, and describe each turn
     after it. ``fitted`` holds each edited design before further segments were changed to keep the road valid,
     and after that."""
@@ -100,13 +100,13 @@ def grades_changed(
         yield f"from {start:.0f} to {end:.0f} m: {grade}, {climb}"
 
 
-def _counted(before: Measures, after: Measures) -> Iterator[str]:
+def _counted(before: RoadMeasures, after: RoadMeasures) -> Iterator[str]:
     yield f"{len(before.turns)} -> {len(after.turns)} turns"
     for number, turn in enumerate(after.turns, 1):
         yield f"turn {number} is now {_turn(turn)}"
 
 
-def _things(before: RoadElements, new: RoadElements, found: Measures) -> Iterator[str]:
+def _things(before: RoadElements, new: RoadElements, found: RoadMeasures) -> Iterator[str]:
     after = {element.name: element for element in new}
     seen_as = {one.name: seen for one, seen in zip(new, features_of(new, found), strict=True)}
     names = _names(before)
@@ -378,7 +378,7 @@ class Named(NamedTuple):
     """The elements of a road, and where to find those of the road before the edit."""
 
     elements: RoadElements
-    found: Measures
+    found: RoadMeasures
     by_name: Mapping[str, RoadElement]
     """By the name of each element before the edit, the element of which it is a part now; a turn that was
     removed is missing."""
@@ -518,7 +518,7 @@ def _part(placed: PlacedChange, now: Named) -> RoadElements:
     return own[first : len(own) if how in ("after", "from") else max(at) + 1]
 
 
-def renamed(road: Look, now: Named, geometry: Geometry, stage: int) -> Named:
+def renamed(road: FittedRoad, now: Named, geometry: Geometry, stage: int) -> Named:
     """Measures a road after a stage; its elements have the names that they had in ``now``, before it.
     Straights that a removal joined have the name of the longest of those that were there before the edit."""
     elements, found = elements_on_road(road.design, geometry)

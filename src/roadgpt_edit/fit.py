@@ -1,6 +1,6 @@
 """Changes the free elements of a road as little as needed to meet requirements. Main function: ``fit``.
 
-    elements --look--> what is wrong? --aim_of--> limits --least_change--> segments --graded--> look --> Look
+    elements --look--> what is wrong? --aim_of--> limits --least_change--> segments --graded--> FittedRoad
 
 An edit first freezes every element that the request does not name: the element's lengths, turns and radii
 stay exactly as they are. Only if no valid road is found that way, all elements are free. The road as a whole
@@ -47,7 +47,7 @@ from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import LEAST_STRAIGHT
 from roadgpt.check.extremes import lowest
 from roadgpt.check.matching import complaints, fits, turn_complaints
-from roadgpt.check.measures import LEAST_TURN, LEVEL, MeasuredFeature, Measures, measure, way
+from roadgpt.check.measures import LEAST_TURN, LEVEL, MeasuredFeature, RoadMeasures, measure, way
 from roadgpt.check.rules.below_floor import ROUNDING
 from roadgpt.check.rules.too_abrupt import abrupt_place
 from roadgpt.design import vertical
@@ -86,7 +86,7 @@ class Requirements(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Look:
+class FittedRoad:
     """A design with the road that was built from it, the findings of the rules, and measurements."""
 
     design: Design  # the design, moved inside the map and above the ground if necessary
@@ -96,7 +96,7 @@ class Look:
     requirements: Requirements
 
     @cached_property
-    def found(self) -> Measures:
+    def found(self) -> RoadMeasures:
         """The measured turns, straights and grades."""
         return measure(self.road.centreline())
 
@@ -168,7 +168,7 @@ class _Slopes(NamedTuple):
         """Returns the inclines of all segments, limited to those that are possible."""
         return np.clip(grades, [bound.lo for bound in self.bounds], [bound.hi for bound in self.bounds])
 
-    def missing(self, found: Measures) -> Array:
+    def missing(self, found: RoadMeasures) -> Array:
         """Returns, for each segment, the percentage points by which the measured grade of its element must
         change to reach the aim, ``(n,)``; 0 if the grade is accepted."""
         out = np.zeros(len(self.bounds))
@@ -401,7 +401,11 @@ class Aim(NamedTuple):
 
 
 def aim_of(
-    first: Look, last: Look, now: tuple[Segment, ...] | None, free: NDArray[np.bool_], margins: Margins
+    first: FittedRoad,
+    last: FittedRoad,
+    now: tuple[Segment, ...] | None,
+    free: NDArray[np.bool_],
+    margins: Margins,
 ) -> Aim:
     """Returns the lengths and turns that a plan should have, and all limits for them.
 
@@ -417,7 +421,7 @@ def aim_of(
     return Aim(lengths, turns, free, proposed, figure, rows, most, first.requirements.world, margins)
 
 
-def _as_written(first: Look, last: Look) -> RoadElements:
+def _as_written(first: FittedRoad, last: FittedRoad) -> RoadElements:
     figure = polyline_of(last.design.segments)
     seen = last.seen if last.has_turns else (None,) * len(last.elements)
     return tuple(
@@ -483,7 +487,7 @@ class _Rows:
 
 
 def _limits_of(
-    first: Look, elements: Sequence[RoadElement], peak: Array, margins: Margins
+    first: FittedRoad, elements: Sequence[RoadElement], peak: Array, margins: Margins
 ) -> tuple[Array, Array]:
     """Returns all limits of lengths and turns as a matrix ``(m, 2 n)`` and a right-hand side ``(m,)``;
     ``peak`` is the ratio of maximum to mean curvature of each of the ``n`` segments."""
@@ -740,13 +744,13 @@ MOST_SEGMENTS = 60  # free segments; a road with more is not fitted
 
 def fit(
     design: Design, elements: RoadElements, requirements: Requirements, frozen: Collection[str] = frozenset()
-) -> Look:
+) -> FittedRoad:
     """Finds a road that meets all requirements and differs from the design as little as possible.
 
     ``design`` is the road after the steps of an edit and then ``graded``, and ``elements`` are its turns and
     straights in driving order, each with its requirement. ``frozen`` are the names of the elements whose
-    lengths, turns and radii stay as they are. Returns a Look at that road, with an empty ``objection``; if no
-    such road was found, a Look at the design, moved inside the map if possible. Raises UsageError if no road
+    lengths, turns and radii stay as they are. Returns that FittedRoad, with an empty ``objection``; if no
+    such road was found, that of the design, moved inside the map if possible. Raises UsageError if no road
     can be built from these segments."""
     world, before = requirements.world, requirements.before
     first = look(design, elements, requirements)
@@ -773,8 +777,8 @@ def fit(
     return first
 
 
-def look(design: Design, elements: RoadElements, requirements: Requirements) -> Look:
-    """Builds and checks the road of a design, and returns a Look at it. The elements of the Look are
+def look(design: Design, elements: RoadElements, requirements: Requirements) -> FittedRoad:
+    """Builds and checks the road of a design, and returns its FittedRoad. The elements of that are
     ``elements`` with the segments of the design. If the road is not inside the map and above the ground, it
     is moved there if possible."""
     world, geometry = requirements.world, requirements.geometry
@@ -793,10 +797,10 @@ def look(design: Design, elements: RoadElements, requirements: Requirements) -> 
     if moved != design:
         road = world.lay(build(moved, geometry))
         findings = check.inspect(road, None, world)
-    return Look(moved, elements, road, findings, requirements)
+    return FittedRoad(moved, elements, road, findings, requirements)
 
 
-def _restored(mended: Look, first: Look) -> Look:
+def _restored(mended: FittedRoad, first: FittedRoad) -> FittedRoad:
     """Returns a repaired road, which meets all rules and requirements, with changed values set back to the
     proposed ones where it then still meets them."""
     trials: list[tuple[float, int, str]] = []
@@ -820,4 +824,4 @@ def _restored(mended: Look, first: Look) -> Look:
     return mended
 
 
-__all__ = ["Look", "Requirements", "fit", "look"]
+__all__ = ["FittedRoad", "Requirements", "fit", "look"]

@@ -15,7 +15,7 @@ import numpy as np
 
 from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature
-from roadgpt.check.measures import MeasuredFeature, Measures, measure, way
+from roadgpt.check.measures import MeasuredFeature, RoadMeasures, measure, way
 from roadgpt.design.elements import straight, turn_segments
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design, Geometry, Segment, build
@@ -137,7 +137,7 @@ class RoadElement:
 RoadElements = tuple[RoadElement, ...]
 
 
-def elements_on_road(design: Design, geometry: Geometry = "arcs") -> tuple[RoadElements, Measures]:
+def elements_on_road(design: Design, geometry: Geometry = "arcs") -> tuple[RoadElements, RoadMeasures]:
     """Measures the road of a design; returns its turns and the gaps between them, and the measurements."""
     found = measure(build(design, geometry).centreline())
     joints = np.concatenate([[0.0], np.cumsum([s.distance for s in design.segments])])
@@ -175,12 +175,12 @@ def _members(
     return int(which[0]), int(which[-1]) + 1
 
 
-def shows_turns(found: Measures, elements: Sequence[RoadElement]) -> bool:
+def shows_turns(found: RoadMeasures, elements: Sequence[RoadElement]) -> bool:
     """Returns whether a measured road has the same sequence of left and right turns as the elements."""
     return [turn.side for turn in found.turns] == [one.side for one in elements if one.is_turn]
 
 
-def shows_slopes(found: Measures, elements: Sequence[RoadElement]) -> bool:
+def shows_slopes(found: RoadMeasures, elements: Sequence[RoadElement]) -> bool:
     """Returns whether each measured turn climbs, falls or is level like its segments, or has the required
     grade. The measured turns must correspond to those of the elements."""
     turns = (one for one in elements if one.is_turn)
@@ -191,7 +191,7 @@ def shows_slopes(found: Measures, elements: Sequence[RoadElement]) -> bool:
     )
 
 
-def features_of(elements: Sequence[RoadElement], found: Measures) -> tuple[MeasuredFeature | None, ...]:
+def features_of(elements: Sequence[RoadElement], found: RoadMeasures) -> tuple[MeasuredFeature | None, ...]:
     """Returns the measured feature of each element; None for an element without a feature of its own. The
     measured turns must correspond to those of the elements. If there are several elements between two turns,
     the straight measured there is assigned to the longest of them."""

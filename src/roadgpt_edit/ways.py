@@ -17,7 +17,7 @@ from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature, both
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import KINDS, PERCENT_SLACK, SHARPNESS, SLOPES
-from roadgpt.check.measures import Measures, way
+from roadgpt.check.measures import RoadMeasures, way
 from roadgpt.design.elements import straight, turn_segments
 from roadgpt.errors import EditError, UsageError
 from roadgpt.road import Segment, World
@@ -297,7 +297,7 @@ def _bounded(change: Change, elements: Sequence[RoadElement]) -> SlopeOfAll:
     return SlopeOfAll(names, least=bound, most=inf, sign=1 if up else -1)
 
 
-def slope_steps(change: Change, element: RoadElement, found: Measures, world: World) -> list[EditStep]:
+def slope_steps(change: Change, element: RoadElement, found: RoadMeasures, world: World) -> list[EditStep]:
     """Returns alternative steps, each of which gives one turn or straight another grade; none if the element
     already has this grade. Raises EditError if the grade is steeper than the rules allow, or cannot become
     steeper."""

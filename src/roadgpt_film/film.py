@@ -28,7 +28,7 @@ from roadgpt.network import refuse_without_route
 from roadgpt.report import canvas
 from roadgpt.run import Run
 from roadgpt.run.atomic import whole_file
-from roadgpt.scene import Camera, Mount, Pose, Scene
+from roadgpt.scene import Camera, Mount, Pose, Scenery
 from roadgpt.traffic.actor import bodies
 from roadgpt.verdict import percent, severity
 from roadgpt.verdict.oracle import margins
@@ -189,7 +189,7 @@ class Pane:
     """Renders what one camera sees at any time of a drive; several threads may call ``draw`` at once."""
 
     run: Run
-    scene: Scene
+    scene: Scenery
     trip: Trip
     camera: Camera
 
@@ -285,7 +285,7 @@ class Film:
             raise UsageError(f"there is no view '{view}'; say {', '.join(get_args(View))}")
         settings = settings or Settings()
         trips = [Trip.of(run) for run in runs]
-        scenes = [Scene.of(run.road, run.world) for run in runs if run.road is not None]
+        scenes = [Scenery.of(run.road, run.world) for run in runs if run.road is not None]
         mounts: tuple[Mount, ...] = ("chase", "bonnet") if view == "both" else (view,)
         panes = [
             tuple(

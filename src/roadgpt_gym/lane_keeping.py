@@ -179,10 +179,10 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         if self.render_mode is None or self.road is None:
             return None
         from roadgpt.scene import Camera as Pinhole
-        from roadgpt.scene import Pose, Scene
+        from roadgpt.scene import Pose, Scenery
 
         if self._scene is None:
-            self._scene = Scene.of(self.road, self._world)
+            self._scene = Scenery.of(self.road, self._world)
         pose = Pose(**{name: self._row[name] for name in Pose._fields if name in self._row})
         return self._scene.render(Pinhole(*FILM, mount="chase"), pose, car=pose)
 

@@ -22,7 +22,7 @@ import numpy as np
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
-from roadgpt.campaign.columns import Columns
+from roadgpt.campaign.columns import ResultColumns
 from roadgpt.campaign.columns.execution import columns as of_competition
 from roadgpt.check.measures import measure
 from roadgpt.geometry.curve import Array
@@ -117,4 +117,4 @@ def _numbers(run: Run) -> dict[str, float]:
     return found
 
 
-columns = Columns(_numbers, bounds=OWN_BOUNDS)
+columns = ResultColumns(_numbers, bounds=OWN_BOUNDS)

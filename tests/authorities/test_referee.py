@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from outside_judge import SHARED, load_referee
 from roadgpt.brief import read
-from roadgpt.check.measures import LEAST_TURN, Measures, measure
+from roadgpt.check.measures import LEAST_TURN, RoadMeasures, measure
 from roadgpt.check.truth import Truth, holds
 from roadgpt.design.designers.planner import Planner
 from roadgpt.errors import RoadGPTError
@@ -36,7 +36,7 @@ def referee() -> ModuleType:
     return found
 
 
-def assert_same(ours: Measures, theirs: dict[str, Any], doubt: float = 1e-6) -> None:
+def assert_same(ours: RoadMeasures, theirs: dict[str, Any], doubt: float = 1e-6) -> None:
     """Equal measures, but for a share of so much."""
     assert len(ours.features) == len(theirs["features"])
     for one, other in zip(ours.features, theirs["features"], strict=True):
@@ -100,7 +100,7 @@ def test_designed_roads_are_measured_and_judged_alike(referee: ModuleType, brief
     assert_judged_alike(referee, points, measure(points), seed)
 
 
-def assert_judged_alike(referee: ModuleType, points: Any, found: Measures, seed: int) -> None:
+def assert_judged_alike(referee: ModuleType, points: Any, found: RoadMeasures, seed: int) -> None:
     rng = np.random.default_rng(seed)
     for _ in range(6):
         truth = drawn_truth(rng, found)

@@ -12,7 +12,7 @@ from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.change.request import EditRequest, SceneChange, Things
 from roadgpt.brief.change.staging import changed_scene
 from roadgpt.brief.plan import read_scene, scene_plan
-from roadgpt.brief.scene import Patch, Role, Scene
+from roadgpt.brief.scene import Role, Scene, SlipperyPlace
 from roadgpt.errors import EditError, IdleEditError
 from roadgpt.language.names import ActorKind, Landform, What, Where
 from roadgpt.language.table import MANEUVERS, NUMBERS
@@ -90,7 +90,7 @@ CHANGES = (
     | st.builds(lambda target, n: SceneChange("count", target, **n), ACTORS | LANDSCAPE, COUNTS)
     | numbers_of(ACTORS, *OF_ACTORS)
     | numbers_of(LANDSCAPE, "length", "away")
-    | numbers_of(PLACES, *(name for name in NUMBERS if name in Patch.model_fields))
+    | numbers_of(PLACES, *(name for name in NUMBERS if name in SlipperyPlace.model_fields))
     | numbers_of(single("ego"), "speed")
     | numbers_of(single("fog"), "fog")
     | numbers_of(single("rain"), "rain")

@@ -12,7 +12,7 @@ import pytest
 
 from command_line import invoke, roadgpt
 from roadgpt import plugins
-from roadgpt.campaign.columns import Columns, Told
+from roadgpt.campaign.columns import ResultColumns, Told
 from roadgpt.campaign.record import Record
 from roadgpt.drive.drive import Drive
 from roadgpt.errors import PartError
@@ -27,12 +27,12 @@ def fastest(drive: Drive) -> float:
     return 3.6 * max(drive["speed"].tolist())
 
 
-SPEED = Columns(
+SPEED = ResultColumns(
     lambda run: {"FASTEST": fastest(run.drive)} if run.drive is not None else {},
     told={"FASTEST": Told("fastest_kmh", "fastest {:.0f} km/h".format)},
 )
-TWICE = Columns(lambda run: {"LENGTH": run.length})
-BROKEN = Columns(lambda run: {"LONGEST": 1 / 0})
+TWICE = ResultColumns(lambda run: {"LENGTH": run.length})
+BROKEN = ResultColumns(lambda run: {"LONGEST": 1 / 0})
 
 
 def weather(record: Record) -> Chapter | None:

@@ -21,7 +21,7 @@ from network.ruled import findings, the_finding
 from roadgpt.geometry import GradeProfile, Piece
 from roadgpt.network import Connection, LaneLink, Network, build_route
 from roadgpt.road import Profile, World, read_design
-from roadgpt.road.profile import Lane
+from roadgpt.road.profile import LaneStrip
 
 
 def radius_of_points(points: np.ndarray) -> float:
@@ -141,7 +141,7 @@ class TestLanesDoNotMatch:
     def test_a_width(self, width: float, is_wrong: bool) -> None:
         network = passing("crossroads").network
         number = network.junctions[0].connections[0].road
-        profile = Profile((), (Lane("driving", width),), 0, "none")
+        profile = Profile((), (LaneStrip("driving", width),), 0, "none")
         damaged = with_road(network, number, lambda each: replace(each, road=each.road.with_profile(profile)))
         assert bool(findings("lanes_do_not_match", damaged)) == is_wrong
         if is_wrong:

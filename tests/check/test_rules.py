@@ -17,7 +17,7 @@ from roadgpt.drive.driving_line import line_along
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve, interpolate
 from roadgpt.network import Network
 from roadgpt.road import Design, Limits, Profile, Road, Segment, World, build
-from roadgpt.road.profile import Lane
+from roadgpt.road.profile import LaneStrip
 from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
 WORLD = World()
@@ -64,7 +64,7 @@ class TestFinite:
     def test_a_connecting_road_counts_and_so_does_a_width(self) -> None:
         network = passing("crossroads").network
         number = network.junctions[0].connections[0].road
-        narrow = Profile((), (Lane("driving", math.nan),), 0, "none")
+        narrow = Profile((), (LaneStrip("driving", math.nan),), 0, "none")
         damaged = with_road(
             network, number, lambda each: replace(each, road=replace(each.road, profile=narrow, _sampled={}))
         )

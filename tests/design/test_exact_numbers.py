@@ -5,12 +5,12 @@ import pytest
 
 import roadgpt
 from roadgpt.brief.plan import read_plan
-from roadgpt.check.measures import Measures, measure
+from roadgpt.check.measures import RoadMeasures, measure
 
 SEEDS = range(6)
 
 
-def measured(plan: str) -> list[Measures]:
+def measured(plan: str) -> list[RoadMeasures]:
     brief = read_plan(plan)
     drafts = [roadgpt.draft(brief, roadgpt.World(), seed=seed) for seed in SEEDS]
     return [measure(roadgpt.build(draft).centreline()) for draft in drafts]

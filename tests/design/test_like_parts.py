@@ -5,14 +5,14 @@ import pytest
 from roadgpt.brief.outline import outline
 from roadgpt.brief.plan import read_plan
 from roadgpt.check.matching import complaints
-from roadgpt.check.measures import Measures, measure
+from roadgpt.check.measures import RoadMeasures, measure
 from roadgpt.design import draft
 from roadgpt.road import Design, Segment, World, build
 
 WORLD = World()
 
 
-def measured(line: str, seed: int) -> Measures:
+def measured(line: str, seed: int) -> RoadMeasures:
     design = draft(read_plan(line), WORLD, seed=seed)
     assert isinstance(design, Design)
     return measure(build(design).sample().points)

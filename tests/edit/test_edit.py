@@ -13,7 +13,7 @@ from edit_truth import changed_besides, roads
 from roadgpt import check
 from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.model import Brief
-from roadgpt.check.measures import Measures, measure
+from roadgpt.check.measures import RoadMeasures, measure
 from roadgpt.design import draft
 from roadgpt.errors import EditError
 from roadgpt.road import Design, Geometry, Segment, Site, World, build, in_short_segments
@@ -26,7 +26,7 @@ WORLD = World()
 ROADS = roads()
 
 
-def seen(design: Design) -> Measures:
+def seen(design: Design) -> RoadMeasures:
     """What a person sees."""
     return measure(build(design).centreline())
 

@@ -7,7 +7,7 @@ import pytest
 
 from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.plan import read_plan
-from roadgpt.check.measures import MeasuredFeature, Measures, measure
+from roadgpt.check.measures import MeasuredFeature, RoadMeasures, measure
 from roadgpt.design import draft
 from roadgpt.errors import EditError
 from roadgpt.road import Design, World, build
@@ -31,7 +31,7 @@ def edited(design: Design, plan: str) -> Edited:
     return edit(design, read_change_plan(plan), WORLD)
 
 
-def measured(design: Design) -> Measures:
+def measured(design: Design) -> RoadMeasures:
     return measure(build(design).centreline())
 
 

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadgpt.brief.change.plan import read_change_plan
-from roadgpt.check.measures import Measures, measure
+from roadgpt.check.measures import RoadMeasures, measure
 from roadgpt.errors import EditError, IdleEditError
 from roadgpt.road import Design, Segment, World, build
 from roadgpt_edit.editing import edit
@@ -54,7 +54,7 @@ def test_what_can_both_be_meant_is_done_in_either_order(one: str, other: str) ->
             assert holds(wish, was, now), (plan, wish)
 
 
-def holds(wish: str, was: Measures, now: Measures) -> bool:
+def holds(wish: str, was: RoadMeasures, now: RoadMeasures) -> bool:
     """Does the changed road have what one wish asks for? Written without the code that edits."""
     place, said = wish.split(": ")
     if place == "road" or place.startswith("straight") or "slope" in said:

@@ -6,7 +6,7 @@ import pytest
 from edit_truth import roads
 from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.plan import read_plan
-from roadgpt.check.measures import MeasuredFeature, Measures, measure
+from roadgpt.check.measures import MeasuredFeature, RoadMeasures, measure
 from roadgpt.design import draft
 from roadgpt.errors import EditError, IdleEditError
 from roadgpt.road import Design, World, build
@@ -45,17 +45,17 @@ def edited(design: Design, plan: str) -> Edited:
     return edit(design, read_change_plan(plan), WORLD)
 
 
-def after(design: Design, plan: str) -> Measures:
+def after(design: Design, plan: str) -> RoadMeasures:
     """What a person sees of the road after the changes of a plan."""
     return measure(build(edited(design, plan).design).centreline())
 
 
-def angles(found: Measures) -> list[float]:
+def angles(found: RoadMeasures) -> list[float]:
     """The angles of all turns, positive to the left."""
     return [turn.degrees if turn.side == "left" else -turn.degrees for turn in found.turns]
 
 
-def straights(found: Measures) -> list[MeasuredFeature]:
+def straights(found: RoadMeasures) -> list[MeasuredFeature]:
     """The straights between the turns, and those at the ends."""
     return [feature for gap in found.gaps for feature in gap if feature.kind == "straight"]
 

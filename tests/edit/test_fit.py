@@ -13,7 +13,7 @@ from roadgpt.brief.ranges import Range
 from roadgpt.check.measures import measure
 from roadgpt.design import draft
 from roadgpt.road import Design, World, build
-from roadgpt_edit.fit import Look, Requirements, fit
+from roadgpt_edit.fit import FittedRoad, Requirements, fit
 from roadgpt_edit.road_elements import RoadElements, elements_on_road
 
 WORLD = World()
@@ -24,7 +24,7 @@ def asked_of(elements: RoadElements, name: str, feature: Feature) -> RoadElement
     return tuple(replace(e, asked=feature) if e.name == name else e for e in elements)
 
 
-def fitted(design: Design, name: str, feature: Feature, length: Range | None = None) -> Look:
+def fitted(design: Design, name: str, feature: Feature, length: Range | None = None) -> FittedRoad:
     """The road on which one element has what is asked of it, and all others are frozen."""
     elements, _ = elements_on_road(design)
     frozen = {element.name for element in elements} - {name}

@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from exported import ROADS, WORLD, asam_says, drive
-from roadgpt.export import Others, Poses, save
+from roadgpt.export import Poses, Trajectories, save
 from roadgpt.road import Road, World
 
 REAR_AXLE, GRAVITY_HEIGHT = -1.47, 0.56  # m, of the simulator's car
@@ -221,7 +221,7 @@ def test_who_creeps_among_others_is_where_it_was(tmp_path: Path, creep: float) -
     s = 10 + np.concatenate([[0], np.cumsum(0.02 * (speed[1:] + speed[:-1]) / 2)])
     flat, heading = np.zeros(len(s)), np.full(len(s), 0.3)
     x, y = s * np.cos(0.3), s * np.sin(0.3)
-    cone = Others(
+    cone = Trajectories(
         ("cone",), ("cones",), np.array([[0.4, 0.4, 0.75]]), np.arange(0, 18.1, 0.1), np.zeros((181, 1, 5))
     )
     poses = Poses(time, x, y, flat + GRAVITY_HEIGHT, heading, flat, flat, speed, cone)

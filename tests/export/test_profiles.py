@@ -22,7 +22,7 @@ from roadgpt.export import save
 from roadgpt.export.georeference import LATITUDE, LONGITUDE
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.road import CrossSection, Profile, Road, World
-from roadgpt.road.profile import Lane
+from roadgpt.road.profile import LaneStrip
 
 LENGTH = 150.0
 PLAN = PieceCurve(60.0, 60.0, 0.3, (Piece(30.0), Piece(40.0, 0.0, 1 / 60), Piece(80.0, 1 / 60, 1 / 60)))
@@ -146,7 +146,7 @@ def test_every_format_takes_every_road(tmp_path: Path, format_: str, lanes: str)
     forward, backward = map(int, lanes.split("+"))
     begins = CubicProfile((40.0, 60.0), ((0.0, 0.15, 0.0, 0.0), (3.0, 0.0, 0.0, 0.0)))
     profile = replace(Profile.of(forward, backward, 3.25, 0.0), superelevation_angle=BANK)
-    right = (*profile.right, Lane("driving", begins, "solid"), Lane("shoulder", 1.0))
+    right = (*profile.right, LaneStrip("driving", begins, "solid"), LaneStrip("shoulder", 1.0))
     assert save(Road(PLAN, CLIMB, profile=replace(profile, right=right)), tmp_path, [format_], WORLD)
 
 
@@ -271,7 +271,7 @@ def test_a_level_for_beamng_leans_into_the_bend(tmp_path: Path) -> None:
 
 
 def test_sumo_has_as_many_lanes_as_the_road(tmp_path: Path) -> None:
-    widths = (Lane("driving", 3.0, "broken"), Lane("driving", 3.5, "solid"))
+    widths = (LaneStrip("driving", 3.0, "broken"), LaneStrip("driving", 3.5, "solid"))
     roads = {"both": BANKED, "one way": Road(PLAN, CLIMB, profile=Profile((), widths, 1, "solid"))}
     edges = {}
     for name, road in roads.items():
@@ -310,7 +310,7 @@ def test_lanes_lie_where_they_are_whatever_line_they_lie_beside(tmp_path: Path, 
     at, numbers = {0.0: 60.0, 6.0: 54.0}, []
     for offset, y in at.items():
         own = Profile.of(2, 1, 3.5, 1.0)
-        own = replace(own, left=(Lane("median", 2.0, "solid"), *own.left), offset=offset)
+        own = replace(own, left=(LaneStrip("median", 2.0, "solid"), *own.left), offset=offset)
         road = Road(PieceCurve(60.0, y, 0.0, (Piece(LENGTH),)), GradeProfile.level(LENGTH), profile=own)
         files = save(road, tmp_path / str(y), [format_], WORLD)
         numbers.append([float(n) for file in files for n in re.findall(r"-?\d+\.\d+", file.read_text())])

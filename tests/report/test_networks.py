@@ -19,7 +19,7 @@ from roadgpt.report.overview import pages
 from roadgpt.report.page.maps import draw_site, site_of
 from roadgpt.report.plan_view import ASPHALT, GRASS, KERB, PAINT, TINT, Frame, draw_road
 from roadgpt.road import Design, Profile, Road, World, read_design
-from roadgpt.road.profile import Lane
+from roadgpt.road.profile import LaneStrip
 from roadgpt.run import Run, Setup, perform, prove, write_run
 
 TWO = {
@@ -229,7 +229,7 @@ def test_medians_are_green(is_route: bool) -> None:
         road, profile = route, route.network.road(route.legs[0].road).profile
     else:
         plain = Profile.of(2, 2, 3.5)
-        profile = replace(plain, left=(Lane("median", 2.0, "solid"), *plain.left))
+        profile = replace(plain, left=(LaneStrip("median", 2.0, "solid"), *plain.left))
         road = Road.through([[20, 90, 0], [60, 90, 0], [120, 90, 3]]).with_profile(profile)
     run = prove(road, setup=Setup(drives=False))
     x = np.array([24.0, 32.0, 50.0, 65.0])

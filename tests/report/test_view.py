@@ -21,7 +21,7 @@ from roadgpt.report import view
 from roadgpt.report.view import DRIVE
 from roadgpt.road import CrossSection, Design, Road, Site, World
 from roadgpt.run import Run, Setup, prove, write_run
-from roadgpt.scene import Scene
+from roadgpt.scene import Scenery
 
 EVIL = (
     "</script><script>alert(1)</script><!-- &lt; @@SCRIPT@@ ' \" \\ \u2028 \ud800 "
@@ -161,7 +161,7 @@ def test_a_road_s_own_lanes_and_bank_are_told_at_each_station() -> None:
 
 def test_the_landscape_is_that_of_films(driven: Run) -> None:
     assert driven.road is not None
-    told, film = view.scene(driven)["land"], Scene.of(driven.road, driven.world)
+    told, film = view.scene(driven)["land"], Scenery.of(driven.road, driven.world)
     points, corners = (
         np.frombuffer(base64.b64decode(told["ground"][n]), "<i4") for n in ("points", "corners")
     )

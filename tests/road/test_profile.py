@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.road import CrossSection, Profile, Road, World
-from roadgpt.road.profile import Kind, Lane, profile_from_json, profile_to_json
+from roadgpt.road.profile import Kind, LaneStrip, profile_from_json, profile_to_json
 from tables import rows
 
 STATIONS = np.array([[0.0, 1.0, 2.5], [40.0, 60.0, 80.0]])
@@ -86,15 +86,15 @@ def test_a_width_that_varies_is_followed_by_middle_edges_and_reach() -> None:
 @pytest.mark.parametrize(
     ("left", "right", "driven"),
     [
-        ((), (Lane("shoulder", 1.0),), 1),
-        ((), (Lane("driving", 3.0),), 1),
-        ((), (Lane("shoulder", 1.0), Lane("driving", 3.0)), 0),
-        ((), (Lane("driving", -3.0),), 0),
-        ((), (Lane("driving", CubicProfile((0.0,), ((3.0, 0.1, 0.0, 0.0),))),), 0),
+        ((), (LaneStrip("shoulder", 1.0),), 1),
+        ((), (LaneStrip("driving", 3.0),), 1),
+        ((), (LaneStrip("shoulder", 1.0), LaneStrip("driving", 3.0)), 0),
+        ((), (LaneStrip("driving", -3.0),), 0),
+        ((), (LaneStrip("driving", CubicProfile((0.0,), ((3.0, 0.1, 0.0, 0.0),))),), 0),
     ],
 )
 def test_cross_sections_that_cannot_be_are_refused(
-    left: tuple[Lane, ...], right: tuple[Lane, ...], driven: int
+    left: tuple[LaneStrip, ...], right: tuple[LaneStrip, ...], driven: int
 ) -> None:
     with pytest.raises(ValueError, match=r"\w"):
         Profile(left, right, driven)
@@ -119,7 +119,7 @@ def test_strips_of_any_kind_lie_beside_each_other_in_any_order(seed: int) -> Non
     rng = random.Random(seed)
     left, right = (
         tuple(
-            Lane(rng.choice(KINDS), rng.choice((0.5, 2.0, 3.5)), rng.choice(("solid", "broken", "none")))
+            LaneStrip(rng.choice(KINDS), rng.choice((0.5, 2.0, 3.5)), rng.choice(("solid", "broken", "none")))
             for _ in range(rng.randint(0, 5))
         )
         for _ in range(2)
@@ -127,7 +127,7 @@ def test_strips_of_any_kind_lie_beside_each_other_in_any_order(seed: int) -> Non
     driven = [n for n, lane in enumerate(right) if lane.kind == "driving"]
     profile = Profile(left, right, rng.choice(driven or [0]), "double", offset=rng.choice((0.0, 1.25)))
     at = profile.offset + sum(float(lane.width) for lane in left)
-    strips: list[tuple[int, Lane, float, float]] = []
+    strips: list[tuple[int, LaneStrip, float, float]] = []
     for number, lane in (*list(enumerate(left, 1))[::-1], *((-n, lane) for n, lane in enumerate(right, 1))):
         strips.append((number, lane, at, at - float(lane.width)))
         at -= float(lane.width)
@@ -178,7 +178,7 @@ def test_a_median_of_an_older_file_is_the_lane_beside_the_centre_line(left_hand:
         data = {**data, "left_hand": True}
     profile = profile_from_json({**data, "median": 2.0})
     own, other = (profile.left, profile.right) if left_hand else (profile.right, profile.left)
-    assert other[0] == Lane("median", 2.0, "solid")
+    assert other[0] == LaneStrip("median", 2.0, "solid")
     assert own == Profile.of(2, 2, 3.5, 1.0).right
     assert profile.is_divided
     assert [float(t) for _, t in profile.boundaries(0.0)] == pytest.approx(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from roadgpt.road import Road, World
-from roadgpt.scene import Camera, Pose, Scene
+from roadgpt.scene import Camera, Pose, Scenery
 from roadgpt.traffic import SIZES
 
 FOV, HIGH, WIDE = 1.2, 270, 480
@@ -13,12 +13,12 @@ POSE = Pose(10.0, -2.0, 0.56, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @pytest.fixture(scope="module")
-def scene() -> Scene:
-    return Scene.of(Road.through([[0, 0], [100, 0], [200, 0]]), World())
+def scene() -> Scenery:
+    return Scenery.of(Road.through([[0, 0], [100, 0], [200, 0]]), World())
 
 
 @pytest.mark.parametrize("kind", SIZES)
-def test_what_changes_in_the_image_is_where_the_box_is(scene: Scene, kind: str) -> None:
+def test_what_changes_in_the_image_is_where_the_box_is(scene: Scenery, kind: str) -> None:
     """By hand: a pinhole at the camera's place, looking along x."""
     size, x, y = SIZES[kind], 30.0, -3.0  # type: ignore[index]
     before = scene.render(CAMERA, POSE)
@@ -36,7 +36,7 @@ def test_what_changes_in_the_image_is_where_the_box_is(scene: Scene, kind: str) 
         assert np.ptp(found) > 0.55 * np.ptp(place) - 2
 
 
-def test_who_is_nearer_hides_who_is_behind(scene: Scene) -> None:
+def test_who_is_nearer_hides_who_is_behind(scene: Scenery) -> None:
     truck = ("truck", SIZES["truck"], (40.0, -2.0, 0.0, 0.0))
     child = ("child", SIZES["child"], (60.0, -2.0, 0.0, 0.0))
     both, one = (scene.render(CAMERA, POSE, others=each) for each in ([child, truck], [truck]))
@@ -44,7 +44,7 @@ def test_who_is_nearer_hides_who_is_behind(scene: Scene) -> None:
     assert not np.array_equal(scene.render(CAMERA, POSE, others=[child]), scene.render(CAMERA, POSE))
 
 
-def test_there_is_room_for_many(scene: Scene) -> None:
+def test_there_is_room_for_many(scene: Scenery) -> None:
     crowd = [("car", SIZES["car"], (20.0 + n, -2.0, 0.0, 0.0)) for n in range(70)]
     assert np.array_equal(
         scene.render(CAMERA, POSE, others=crowd), scene.render(CAMERA, POSE, others=crowd[::-1])

@@ -7,7 +7,7 @@ import pytest
 
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.road import CrossSection, Profile, Road, World
-from roadgpt.scene import Camera, Pose, Scene
+from roadgpt.scene import Camera, Pose, Scenery
 from roadgpt.scene.network_mesh import patches_of
 from roadgpt.scene.patterns import noise
 from roadgpt.scene.shade import LaneBoundaries, paved
@@ -39,7 +39,7 @@ def test_the_goal_lies_across_the_driven_lane_only() -> None:
 
 
 def test_a_one_way_road_has_grass_to_the_left_of_its_lane() -> None:
-    image = Scene.of(STRAIGHT, World(section=CrossSection(lanes="1+0", lane_width=3.0))).render(
+    image = Scenery.of(STRAIGHT, World(section=CrossSection(lanes="1+0", lane_width=3.0))).render(
         Camera(width=200, height=120), Pose(90.0, 98.5, 0.56, 0.0)
     )
     row = image[100].astype(int)
@@ -55,7 +55,7 @@ def test_the_surface_of_a_bend_falls_to_its_inside(ratio: float) -> None:
     plan = PieceCurve(60.0, 60.0, 0.0, (Piece(30.0), Piece(30.0, 0.0, k), Piece(60.0, k, k)))
     world = World(section=CrossSection(bank=ratio, shoulder=2.0))
     road = world.lay(Road(plan, GradeProfile(3.0, (0.0, plan.length), (0.0, 0.0))))
-    scene = Scene.of(road, world)
+    scene = Scenery.of(road, world)
     patches, _ = patches_of(road, world, scene.ground)
     surface = np.concatenate([patch.points for patch in patches if (patch.kinds == 0).all()])
     s, t = road.locate(surface[:, 0], surface[:, 1])

@@ -9,7 +9,7 @@ import shapely
 from roadgpt.network import Route, made_from
 from roadgpt.network.markings import arrows, signs
 from roadgpt.road import CrossSection, World, read_design
-from roadgpt.scene import Camera, CameraPlacement, Pose, Scene
+from roadgpt.scene import Camera, CameraPlacement, Pose, Scenery
 from roadgpt.scene.network_mesh import faces_of
 
 HIGH = 40.0  # m, of a camera that looks down
@@ -31,16 +31,16 @@ def route_of(world: World | None = None, lanes: dict[str, object] | None = None,
 
 
 @pytest.fixture(scope="module")
-def crossing() -> Scene:
-    return Scene.of(route_of(kind="crossroads", take="left", control="stop"), World())
+def crossing() -> Scenery:
+    return Scenery.of(route_of(kind="crossroads", take="left", control="stop"), World())
 
 
 @pytest.fixture(scope="module")
-def ring() -> Scene:
-    return Scene.of(route_of(kind="roundabout", take="straight", radius=12), World())
+def ring() -> Scenery:
+    return Scenery.of(route_of(kind="roundabout", take="straight", radius=12), World())
 
 
-def network_of(scene: Scene) -> Route:
+def network_of(scene: Scenery) -> Route:
     assert isinstance(scene.road, Route)
     return scene.road
 
@@ -50,7 +50,7 @@ def camera(high: float = HIGH) -> Camera:
 
 
 def seen(
-    scene: Scene, middle: tuple[float, float, float], places: np.ndarray, high: float = HIGH
+    scene: Scenery, middle: tuple[float, float, float], places: np.ndarray, high: float = HIGH
 ) -> np.ndarray:
     """The colours ``(n, 3)`` of places ``(n, 2)`` from above a point; north is on the left."""
     x, y, z = middle
@@ -79,7 +79,7 @@ def inner(area: shapely.Geometry, step: float = 0.7) -> np.ndarray:
     return grid[shapely.contains_xy(area, grid)]
 
 
-def test_the_whole_junction_is_asphalt_without_lines(crossing: Scene) -> None:
+def test_the_whole_junction_is_asphalt_without_lines(crossing: Scenery) -> None:
     network = network_of(crossing).network
     junction = network.junctions[0]
     inside = shapely.Polygon(network.outline(junction.id)).buffer(-0.5)
@@ -88,7 +88,7 @@ def test_the_whole_junction_is_asphalt_without_lines(crossing: Scene) -> None:
     assert is_grey(pixels).mean() > 0.995
 
 
-def test_side_arms_are_asphalt_and_have_their_lines(crossing: Scene) -> None:
+def test_side_arms_are_asphalt_and_have_their_lines(crossing: Scenery) -> None:
     network = network_of(crossing).network
     junction = network.junctions[0]
     for arm in junction.arms[1:]:
@@ -99,7 +99,7 @@ def test_side_arms_are_asphalt_and_have_their_lines(crossing: Scene) -> None:
         assert is_white(at_edges).mean() > 0.4
 
 
-def test_islands_are_not_asphalt(ring: Scene) -> None:
+def test_islands_are_not_asphalt(ring: Scenery) -> None:
     (roundabout,) = network_of(ring).network.roundabouts
     x, y, _ = roundabout.centre
     places = inner(shapely.Point(x, y).buffer(8))
@@ -132,11 +132,11 @@ def test_all_kinds_give_the_same_image_twice(control: str, shoulder: float) -> N
     world = World(section=CrossSection(shoulder=shoulder))
     route = route_of(world, kind="t_junction", take="right", control=control)
     x, y, z = route.at(30.0, -2.0)
-    pictures = [Scene.of(route, world).render(Camera(64, 36), Pose(x, y, z + 0.56, 0.0)) for _ in range(2)]
+    pictures = [Scenery.of(route, world).render(Camera(64, 36), Pose(x, y, z + 0.56, 0.0)) for _ in range(2)]
     assert (pictures[0] == pictures[1]).all()
 
 
-def test_the_route_begins_with_a_white_line_and_ends_with_a_chequered_band(crossing: Scene) -> None:
+def test_the_route_begins_with_a_white_line_and_ends_with_a_chequered_band(crossing: Scenery) -> None:
     route = network_of(crossing)
     start, end = route.at(0.0), route.at(route.length)
     assert is_white(seen(crossing, tuple(start), route.at(np.full(9, 0.5), np.linspace(-3, -1, 9)))).all()
@@ -169,7 +169,7 @@ def test_lines_between_lanes_lie_where_lanes_meet(
     }
     route = made_from(read_design(data)[0], World())
     assert isinstance(route, Route)
-    scene = Scene.of(route, World())
+    scene = Scenery.of(route, World())
     x = np.arange(50.0, 66.0, 0.05)
 
     def white(t: float) -> float:
@@ -204,7 +204,7 @@ def test_arrows_are_white_and_the_asphalt_beside_them_is_not() -> None:
     assert isinstance(route, Route)
     found = [shapely.Polygon(each.points[:, :2]) for each in arrows(route.network) if each.end.road == 1]
     assert len(found) == 2
-    scene, place = Scene.of(route, World()), (87.0, 57.0, 2.0)
+    scene, place = Scenery.of(route, World()), (87.0, 57.0, 2.0)
     for outline in found:
         assert is_white(seen(scene, place, inner(outline.buffer(-0.04), 0.02), 6.0)).all()
         ring = shapely.difference(outline.buffer(0.2), outline.buffer(0.05))

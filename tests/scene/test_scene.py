@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, Road, Segment, World, build
-from roadgpt.scene import Camera, CameraPlacement, Pose, Scene
+from roadgpt.scene import Camera, CameraPlacement, Pose, Scenery
 
 CAMERA = Camera(320, 180)
 WORLD = World()
@@ -29,13 +29,13 @@ def design(turn: float, inclines: tuple[float, float] = (8, -8)) -> Design:
 
 
 @pytest.fixture(scope="module")
-def bent() -> Scene:
-    return Scene.of(build(design(50)), WORLD)
+def bent() -> Scenery:
+    return Scenery.of(build(design(50)), WORLD)
 
 
 @pytest.fixture(scope="module")
-def straight() -> Scene:
-    return Scene.of(Road.through([[0, 0], [50, 0], [100, 0], [160, 0]]), WORLD)
+def straight() -> Scenery:
+    return Scenery.of(Road.through([[0, 0], [50, 0], [100, 0], [160, 0]]), WORLD)
 
 
 def on(road: Road, s: float, t: float = -2.0, **more: float) -> Pose:
@@ -78,7 +78,7 @@ def markings(road: Road, s0: float) -> np.ndarray:
     ],
 )
 def test_markings_are_seen_where_a_pinhole_puts_them(
-    bent: Scene, s: float, t: float, turned: float, pitch: float, roll: float
+    bent: Scenery, s: float, t: float, turned: float, pitch: float, roll: float
 ) -> None:
     place = CameraPlacement(0.4, 2.2, -0.12)
     camera = Camera(640, 360, math.radians(80), "bonnet", place)
@@ -97,7 +97,7 @@ def test_markings_are_seen_where_a_pinhole_puts_them(
 
 def test_what_lies_behind_a_crest_is_hidden() -> None:
     over = Road.through([[x, 0, 9 * math.exp(-(((x - 60) / 22) ** 2))] for x in range(0, 141, 10)])
-    scene = Scene.of(over, WORLD)
+    scene = Scenery.of(over, WORLD)
     place = CameraPlacement(0.4, 1.3, 0.0)
     camera = Camera(640, 360, math.radians(40), "bonnet", place)
     pose = on(over, 20.0)
@@ -129,7 +129,7 @@ def test_left_is_left_and_a_mirrored_road_gives_a_mirrored_picture() -> None:
     pictures = []
     for turn in (60, -60):
         road = build(design(turn, (0, 0)))
-        pictures.append(Scene.of(road, WORLD).render(CAMERA, on(road, 25.0, 0.0)))
+        pictures.append(Scenery.of(road, WORLD).render(CAMERA, on(road, 25.0, 0.0)))
     left, right = (asphalt(picture) for picture in pictures)
     columns = np.arange(CAMERA.width)
     far = slice(80, 89)  # from where the bend begins
@@ -143,7 +143,7 @@ def asphalt(picture: np.ndarray) -> np.ndarray:
     return (np.ptp(c, axis=2) < 14) & (c.mean(axis=2) < 130)
 
 
-def test_a_straight_road_is_symmetric_and_has_its_colours(straight: Scene) -> None:
+def test_a_straight_road_is_symmetric_and_has_its_colours(straight: Scenery) -> None:
     pose = on(straight.road, 20.0, 0.0)
     picture = straight.render(CAMERA, pose).astype(int)
     road = asphalt(picture)
@@ -159,16 +159,16 @@ def test_a_straight_road_is_symmetric_and_has_its_colours(straight: Scene) -> No
     assert picture[:, :, :].std() > 20
 
 
-def test_the_same_pose_gives_the_same_bytes_in_any_thread(bent: Scene) -> None:
+def test_the_same_pose_gives_the_same_bytes_in_any_thread(bent: Scenery) -> None:
     poses = [on(bent.road, s, steer=0.1, brake=0.5) for s in (10.0, 40.0, 70.0, 100.0)] * 2
-    again = Scene.of(build(design(50)), WORLD)
+    again = Scenery.of(build(design(50)), WORLD)
     one = [bent.render(CAMERA, pose, car=pose).tobytes() for pose in poses]
     with ThreadPoolExecutor(4) as pool:
         assert list(pool.map(lambda pose: again.render(CAMERA, pose, car=pose).tobytes(), poses)) == one
     assert len(set(one)) == 4
 
 
-def test_the_car_is_seen_from_behind_with_a_shadow_and_its_lights_brake(straight: Scene) -> None:
+def test_the_car_is_seen_from_behind_with_a_shadow_and_its_lights_brake(straight: Scenery) -> None:
     camera = Camera(320, 180, math.radians(50), "chase")
     pose = on(straight.road, 40.0)
     empty, still, braking = (

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from roadgpt.drive import CameraSpec
 from roadgpt.drive.camera_sensor import CameraSensor
 from roadgpt.road import Road, World
-from roadgpt.scene import Camera, CameraPlacement, Pose, Scene
+from roadgpt.scene import Camera, CameraPlacement, Pose, Scenery
 
 HEADING = 0.9  # rad, of the road at its start
 ALONG = np.array([math.cos(HEADING), math.sin(HEADING)])
@@ -19,8 +19,8 @@ CAMERA = Camera(480, 270, math.radians(60), "bonnet", CameraPlacement(0.0, UP, 0
 FOCAL = 240 / math.tan(math.radians(30))
 
 
-def scene(text: str) -> Scene:
-    return Scene.of(ROAD, World().changed(scene=text))
+def scene(text: str) -> Scenery:
+    return Scenery.of(ROAD, World().changed(scene=text))
 
 
 def linear(picture: np.ndarray) -> np.ndarray:

@@ -4,12 +4,12 @@ from typing import Any
 
 import pytest
 
-from roadgpt.check.measures import Measures, measure
+from roadgpt.check.measures import RoadMeasures, measure
 from roadgpt.check.truth import Truth, criteria_of
 from roadgpt.road import Design, build, read_design
 
 
-def road(*segments: tuple[str, float, float, float]) -> Measures:
+def road(*segments: tuple[str, float, float, float]) -> RoadMeasures:
     """Of (direction, distance, turn, incline)."""
     rows = [
         {"direction": way, "distance": far, "turn_degrees": turn, "incline": up}

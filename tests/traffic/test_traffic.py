@@ -6,7 +6,7 @@ import pytest
 from exported import ROADS, WORLD
 from roadgpt.traffic import SIZES, STEP, Actor, Mover, Stage, TestedCar, Tracks, Traffic, begin
 from roadgpt.traffic.idm import IdmMover
-from roadgpt.traffic.replay import Replay
+from roadgpt.traffic.replay import ReplayMover
 from roadgpt.traffic.script import Script
 
 TestedCar.__test__ = False
@@ -80,14 +80,14 @@ def test_a_replay_gives_the_samples_and_nobody_is_there_without_a_reason() -> No
     assert begin(ROADS["arcs"], WORLD, 1) is None
 
 
-@pytest.mark.parametrize("kind", [Replay, Script, IdmMover])
+@pytest.mark.parametrize("kind", [ReplayMover, Script, IdmMover])
 def test_every_mover_keeps_its_protocol_and_gives_the_same_again(kind: type[Mover]) -> None:
     world, states = WORLD, np.random.default_rng(0).uniform(-9, 9, (20, 3, 5))
     tracks = Tracks(tuple(Actor(f"car {n}", "car", SIZES["car"]) for n in range(3)), states)
     scene = getattr(world, "scene", None)
     if scene is not None:
         world = world.model_copy(update={"scene": scene.model_copy(update={"flow": "medium"})})
-    with_what = tracks if kind is Replay else Stage(ROADS["arcs"], world, 7)
+    with_what = tracks if kind is ReplayMover else Stage(ROADS["arcs"], world, 7)
     made = [kind(with_what) for _ in range(2)]
     nobody = np.empty((0, 7))
     for number in range(10):

@@ -13,7 +13,7 @@ from roadgpt.drive import Columns, Drive
 from roadgpt.network import Route
 from roadgpt.road import Limits, Road, World
 from roadgpt.verdict import Verdict, judge
-from roadgpt.verdict.criteria import Evidence, incidents_of
+from roadgpt.verdict.criteria import Judged, incidents_of
 from roadgpt.verdict.law import fault_of, law_of
 from roadgpt.verdict.verdict import Contact
 from staged import Motion, among, driven, straight, tracks
@@ -207,7 +207,7 @@ CASES = cases()
 @pytest.mark.parametrize("name", CASES)
 def test_what_the_law_says(name: str) -> None:
     drive, road, world, expected = CASES[name]
-    found = incidents_of(Evidence(road, drive, world))
+    found = incidents_of(Judged(road, drive, world))
     law = law_of(road, drive, world, found)
     contact = next(each.contact for each in found if each.contact is not None)
     fault = fault_of(law, contact, is_own_doing=False)

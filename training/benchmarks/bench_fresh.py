@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from roadgpt.brief import SURE
-from roadgpt.check.measures import Measures, measure
+from roadgpt.check.measures import RoadMeasures, measure
 from roadgpt.check.truth import Truth, holds
 from roadgpt.design import draft
 from roadgpt.design.room import world_for
@@ -70,7 +70,7 @@ def rows(path: Path) -> list[dict[str, Any]]:
     return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
 
 
-def is_met(truth: dict[str, Any], roads: Sequence[Measures]) -> bool:
+def is_met(truth: dict[str, Any], roads: Sequence[RoadMeasures]) -> bool:
     """Does every road meet the truth, or each road one of several?"""
     some = [
         {key: value for key, value in way.items() if key != "beside"} for way in truth.get("either", [truth])

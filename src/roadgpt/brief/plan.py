@@ -45,10 +45,10 @@ from roadgpt.brief.scene import (
     Land,
     Lie,
     Mark,
-    Patch,
     Person,
     Role,
     Scene,
+    SlipperyPlace,
     usual_weather,
 )
 from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, LandKind
@@ -204,7 +204,7 @@ OF_ITSELF = _of_scene(Scene, NUMBERS, turn=get_args(Way), person=get_args(Person
 ITSELF = language(OF_ITSELF, TESTED_CAR, lane=_lane_number)
 A_LAND = language(_of_scene(Land, Land.model_fields, lie=get_args(Lie), side=SIDES), "landscape")
 SLIPPERY = "slippery"
-A_PATCH = language(_of_scene(Patch, Patch.model_fields), "slippery place")
+A_PATCH = language(_of_scene(SlipperyPlace, SlipperyPlace.model_fields), "slippery place")
 CLOCK = "clock"
 CONDITIONS = {
     word: (field, word)
@@ -526,7 +526,7 @@ def scene_fields(text: str) -> dict[str, object]:
         elif first == TESTED_CAR:
             _read_words(fields, words, ITSELF)
         elif first == SLIPPERY:
-            patches.append(_made(Patch, _read_words({}, words, A_PATCH), part))
+            patches.append(_made(SlipperyPlace, _read_words({}, words, A_PATCH), part))
         elif first in LANDFORMS:
             lands.append(_made(Land, _read_words({"kind": first}, words, A_LAND), part))
         elif first in WEATHER and len(words) < 2:

@@ -187,7 +187,7 @@ class Role(Frozen):
         return f"{said}, {who} {', then '.join(map(str, self.actions))}" if self.actions else said
 
 
-class Patch(Frozen):
+class SlipperyPlace(Frozen):
     """A stretch of the tested car's road with a friction of its own."""
 
     friction: Amount = exactly(0.3)
@@ -291,7 +291,7 @@ class Scene(Frozen):
     light: Light | None = None
     """Night, or a sun that is low ahead of the tested car at its start; None: day."""
     surface: Surface | None = None
-    slippery: tuple[Patch, ...] = ()
+    slippery: tuple[SlipperyPlace, ...] = ()
     land: LandKind | None = None
     """How high the hills of the land are; None: as ``hills`` says."""
     landscape: tuple[Land, ...] = ()

@@ -34,7 +34,7 @@ from roadgpt.drive.loading import absolute_spec, driver_from_file
 from roadgpt.errors import UsageError, advice_on
 from roadgpt.reading import read_text, toml_of
 from roadgpt.road import Geometry, World
-from roadgpt.road.world import STEEPEST, Criterion, Lanes, NotNegative, Positive, bank_in
+from roadgpt.road.world import STEEPEST, Avoider, Lanes, NotNegative, Positive, bank_in
 from roadgpt.run.model import Request, Setup
 
 MOST_CELLS = 100_000
@@ -233,7 +233,7 @@ class WorldTable(Frozen, strict=True):
     oracle: Annotated[str, BeforeValidator(str)] | None = None
     oob_tolerance: Annotated[float, Field(gt=0, le=1)] | None = None
     lane_departure: bool | None = None
-    avoidable: Criterion | None = None
+    avoidable: Avoider | None = None
     min_radius: Positive = 14.326
     max_grade: Annotated[float, Field(gt=0, le=1)] = 0.15
 

@@ -1,7 +1,7 @@
 """Describes a finished road as a Brief, the data structure for descriptions."""
 
 from roadgpt.brief.model import Brief, Clause, exactly, span
-from roadgpt.check.measures import MeasuredFeature, Measures, measure, way
+from roadgpt.check.measures import MeasuredFeature, RoadMeasures, measure, way
 from roadgpt.road import Road
 
 STEEPER = 1.5  # percent; the steepest place is told if it is steeper than all the mean grades by more
@@ -30,7 +30,7 @@ def describe(road: Road) -> Brief:
     )
 
 
-def _clauses(feature: MeasuredFeature, found: Measures) -> list[Clause]:
+def _clauses(feature: MeasuredFeature, found: RoadMeasures) -> list[Clause]:
     if sum(piece.length for piece in feature.pieces) > TOLD * feature.length:
         return [*map(_clause, feature.pieces)]
     is_bumpy = {"up", "down"} <= found.ways(feature)

@@ -48,7 +48,7 @@ from roadgpt.check.measures import (
     MeasuredLanes,
     MeasuredMap,
     MeasuredNode,
-    Measures,
+    RoadMeasures,
 )
 from roadgpt.language.names import Control
 from roadgpt.language.table import ROADS
@@ -137,7 +137,7 @@ def turn_complaints(
     return tuple(out)
 
 
-def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...]:
+def sequence_complaints(found: RoadMeasures, asked: Outline) -> tuple[Complaint, ...]:
     """Returns the Complaints about the turns and straights of an Outline, in driving order. The road is
     matched so that the fewest of them are not as requested; the only Complaint is about the number of turns
     if no match is possible."""
@@ -180,7 +180,7 @@ def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...
 
 
 def _of_gap(
-    found: Measures, gap: tuple[MeasuredFeature, ...], wanted: tuple[Feature, ...], turn: int
+    found: RoadMeasures, gap: tuple[MeasuredFeature, ...], wanted: tuple[Feature, ...], turn: int
 ) -> Match:
     if not wanted or (len(wanted) == 1 and any(fits(straight, wanted[0]) for straight in gap)):
         return 0, ()
@@ -216,7 +216,7 @@ def _ramps(wanted: tuple[Feature, ...]) -> list[list[Feature]]:
     return out
 
 
-def _fit(found: Measures, piece: MeasuredFeature, ramp: Sequence[Feature]) -> bool:
+def _fit(found: RoadMeasures, piece: MeasuredFeature, ramp: Sequence[Feature]) -> bool:
     if len(ramp) == 1:
         return fits(piece, ramp[0])
     changes = [change_of_grade(one.grade, other.grade) for one, other in pairwise(ramp)]
@@ -287,7 +287,7 @@ def like_straights(gaps: Sequence[Sequence[Feature]]) -> list[LikeGroup]:
     return [*groups, even]
 
 
-def likeness_complaints(found: Measures, asked: Outline) -> Iterator[Complaint]:
+def likeness_complaints(found: RoadMeasures, asked: Outline) -> Iterator[Complaint]:
     """Yields a complaint for each group of turns or straights that should be alike and is not. If the number
     of turns is open, a road is compared only if all required turns have one name and no straight is required.
     """
@@ -339,7 +339,7 @@ def _wanted(asked: Outline, count: int) -> tuple[list[Feature], list[list[Featur
     return turns, gaps
 
 
-def complaints(found: Measures, asked: Outline) -> list[Complaint]:
+def complaints(found: RoadMeasures, asked: Outline) -> list[Complaint]:
     """Returns one Complaint for each requirement of an Outline that a measured road does not meet."""
     out = list(_counts(found, asked))
     if len(found.turns) in asked.turns:
@@ -374,7 +374,7 @@ def speed_complaints(road: Road, speed: SpeedLimits) -> Iterator[Complaint]:
             yield Complaint(f"{asked}, has {1 / curvature:.0f} m", at, on_heights=what != "radius")
 
 
-def _counts(found: Measures, asked: Outline) -> Iterator[Complaint]:
+def _counts(found: RoadMeasures, asked: Outline) -> Iterator[Complaint]:
     number = len(found.turns)
     counts = {"turns": number, "left": found.count("left"), "right": found.count("right")}
     for name, has in counts.items():
@@ -390,7 +390,7 @@ def _counts(found: Measures, asked: Outline) -> Iterator[Complaint]:
             yield Complaint(text, other.start)
 
 
-def _slopes(found: Measures, asked: Outline) -> Iterator[Complaint]:
+def _slopes(found: RoadMeasures, asked: Outline) -> Iterator[Complaint]:
     """Checks the whole road: up or down on average and nowhere the other way, or level everywhere."""
     low, high, mean = found.lowest_grade, found.highest_grade, found.grade
     whole = 100 * found.climb / found.length
@@ -408,7 +408,7 @@ def _slopes(found: Measures, asked: Outline) -> Iterator[Complaint]:
         yield Complaint(f"asked for a mean grade of {asked.grade_range} %, has {mean:.1f} %", on_heights=True)
 
 
-def _ends(found: Measures, asked: Outline) -> Iterator[Complaint]:
+def _ends(found: RoadMeasures, asked: Outline) -> Iterator[Complaint]:
     for feature, index, says in ((asked.starts, 0, "start"), (asked.ends, -1, "end")):
         if feature is None:
             continue

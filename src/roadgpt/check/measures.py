@@ -114,7 +114,7 @@ class CentreLine(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Measures:
+class RoadMeasures:
     """The measured turns, straights, grades and lengths of a road."""
 
     features: tuple[MeasuredFeature, ...]  # turns and straights in driving order
@@ -182,7 +182,7 @@ class _Bend(NamedTuple):
     degrees: float
 
 
-def measure(points: ArrayLike, widest: float = USUALLY_WIDEST) -> Measures:
+def measure(points: ArrayLike, widest: float = USUALLY_WIDEST) -> RoadMeasures:
     """Measures a road given by points ``(n, 2)`` or ``(n, 3)`` in metres of its centre line, about 1 m apart.
     Bends wider than ``widest`` metres are not turns. Raises UsageError if there are fewer than two different
     points, or a number is not finite."""
@@ -193,7 +193,7 @@ def measure(points: ArrayLike, widest: float = USUALLY_WIDEST) -> Measures:
     long = _windows(line, LONG_WINDOW if len(s) > 2 * LONG_WINDOW else max(2, len(s) // 4))
     short = _windows(line, min(SHORT_WINDOW, len(s) - 1))
     ways = np.sign(long[np.abs(long) >= LEVEL])
-    return Measures(
+    return RoadMeasures(
         features=features,
         length=float(s[-1]),
         climb=climb,

@@ -29,7 +29,7 @@ from roadgpt.brief.outline import Feature, Group, Outline
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import KINDS
 from roadgpt.check.matching import complaints
-from roadgpt.check.measures import Measures
+from roadgpt.check.measures import RoadMeasures
 
 SLACK = 1e-9  # added to both ends of every range, as in the referee
 SHORTEST = 20.0  # m; a shorter road meets no requirement
@@ -45,8 +45,8 @@ CALLED = {"max_grade": "steepest", "hilly": "hills", "min_radius": "radius", "se
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Span = tuple[Number | None, Number | None]
 Slope = Literal["up", "down", "flat"]
-Criterion = Literal["turns", "incline", "order", "extent", "general"]
-CRITERIA: tuple[Criterion, ...] = ("turns", "incline", "order", "extent", "general")
+KeptCriterion = Literal["turns", "incline", "order", "extent", "general"]
+CRITERIA: tuple[KeptCriterion, ...] = ("turns", "incline", "order", "extent", "general")
 ASKED = {
     "turns": "number of turns",
     "incline": "incline",
@@ -55,14 +55,14 @@ ASKED = {
     "general": "in general: all at once",
 }
 """Names of the criteria in reports."""
-FIELDS: Mapping[Criterion, tuple[str, ...]] = {
+FIELDS: Mapping[KeptCriterion, tuple[str, ...]] = {
     "turns": ("turns", "left", "right"),
     "incline": ("grade", "grade_range", "steepest", "climb", "hills"),
     "order": ("alternating",),
     "extent": ("each_turn", "length", "radius", "turning"),
 }
 """The fields of an Outline that set requirements for the whole road or for every turn, by criterion."""
-FEATURE_FIELDS: Mapping[Criterion, tuple[str, ...]] = {
+FEATURE_FIELDS: Mapping[KeptCriterion, tuple[str, ...]] = {
     "incline": ("grade", "bump"),
     "order": ("side",),
     "extent": ("degrees", "radius", "length"),
@@ -162,18 +162,18 @@ def _asked(value: Any) -> Any:
     return Range(-inf if low is None else low - SLACK, inf if high is None else high + SLACK)
 
 
-def holds(found: Measures, truth: Truth) -> dict[str, bool]:
+def holds(found: RoadMeasures, truth: Truth) -> dict[str, bool]:
     """Returns, for each key of a truth, whether a measured road meets it; a road below 20 m meets none."""
     return {
         key: found.length >= SHORTEST and not complaints(found, truth.outline(key)) for key in truth.given()
     }
 
 
-def criteria_of(found: Measures, asked: Outline) -> dict[Criterion, bool]:
+def criteria_of(found: RoadMeasures, asked: Outline) -> dict[KeptCriterion, bool]:
     """Returns, for each criterion of an Outline, whether a measured road meets it; a road below 20 m meets
     none. The Outline contains either the requirements that people wrote down in a Truth, or those that a
     reader found in a description."""
-    out: dict[Criterion, bool] = {}
+    out: dict[KeptCriterion, bool] = {}
     for criterion, fields in FIELDS.items():
         own = {name: getattr(asked, name) for name in fields}
         if any(value != getattr(FREE, name) for name, value in own.items()):
@@ -184,9 +184,9 @@ def criteria_of(found: Measures, asked: Outline) -> dict[Criterion, bool]:
     return {criterion: good and found.length >= SHORTEST for criterion, good in out.items()}
 
 
-def _of_features(found: Measures, asked: Outline) -> dict[Criterion, bool]:
+def _of_features(found: RoadMeasures, asked: Outline) -> dict[KeptCriterion, bool]:
     """Returns the criteria of individual turns and straights, each checked without the other criteria."""
-    out: dict[Criterion, bool] = {}
+    out: dict[KeptCriterion, bool] = {}
     for criterion, fields in FEATURE_FIELDS.items():
         is_order = criterion == "order"
         wanted: list[Group] = []

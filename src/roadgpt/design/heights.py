@@ -18,7 +18,7 @@ from roadgpt.brief.outline import USUALLY_WIDEST, Outline
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import STEEPEST
 from roadgpt.check.matching import Complaint, complaints
-from roadgpt.check.measures import MeasuredFeature, Measures, measure, way
+from roadgpt.check.measures import MeasuredFeature, RoadMeasures, measure, way
 from roadgpt.design.compose import Windows, is_hairpin
 from roadgpt.design.elements import cut, required_hills, rounded
 from roadgpt.design.layout import PlanLine
@@ -425,7 +425,7 @@ def _with_radii(elements: Sequence[Element], pace: Pace, ease: float, bumps: boo
     return out
 
 
-def _shared_ends(elements: Sequence[Element], ends: Array, found: Measures) -> Array:
+def _shared_ends(elements: Sequence[Element], ends: Array, found: RoadMeasures) -> Array:
     """Returns the stations at which straights of other grades should be measured to end.
 
     With the joint where it is required, the climb is as the words say, but the steeper straight is measured
@@ -448,7 +448,7 @@ def _shared_ends(elements: Sequence[Element], ends: Array, found: Measures) -> A
 
 
 def _pieces(
-    elements: Sequence[Element], found: Measures
+    elements: Sequence[Element], found: RoadMeasures
 ) -> Iterator[tuple[range, list[MeasuredFeature], list[list[int]]]]:
     """Yields the straights between two turns, as they are measured and as the draft has them: runs of the
     same direction of slope. They are left out if they do not correspond, or if no length is fixed."""
@@ -461,7 +461,7 @@ def _pieces(
             yield row, pieces, runs
 
 
-def _corrected(elements: Sequence[Element], ends: Array, found: Measures, limit: Range) -> list[Element]:
+def _corrected(elements: Sequence[Element], ends: Array, found: RoadMeasures, limit: Range) -> list[Element]:
     out = list(elements)
     joints = np.cumsum([0.0, *(element.length for element in elements)])
     for row, pieces, runs in _pieces(elements, found):

@@ -32,12 +32,12 @@ class CameraSensor:
     def __init__(self, camera: CameraSpec, road: "Road", world: "World") -> None:
         """Mounts a camera on a car on this road."""
         from roadgpt.scene import Camera as Pinhole
-        from roadgpt.scene import CameraPlacement, Scene
+        from roadgpt.scene import CameraPlacement, Scenery
 
         half = math.tan(camera.field_of_view / 2) * camera.width / camera.height
         place = CameraPlacement(camera.ahead, camera.up, -camera.down)
         self._camera = Pinhole(camera.width, camera.height, 2 * math.atan(half), "bonnet", place)
-        self._scene = Scene.of(road, world)
+        self._scene = Scenery.of(road, world)
         self._every, self._step = max(1, camera.every), 0
         self._image: NDArray[uint8] | None = None
 

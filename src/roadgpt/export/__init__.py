@@ -23,13 +23,13 @@ import numpy as np
 
 from roadgpt import plugins
 from roadgpt.errors import ExportError, UsageError
-from roadgpt.export.ego import Others, Poses
+from roadgpt.export.ego import Poses, Trajectories
 from roadgpt.geometry import CubicProfile
 from roadgpt.network import network_of, only_road
 from roadgpt.road import Road, World
 from roadgpt.road.edges import fold
 
-__all__ = ["Exporter", "Others", "Poses", "doubts", "exporter_of", "save"]
+__all__ = ["Exporter", "Poses", "Trajectories", "doubts", "exporter_of", "save"]
 
 OTHERS = "others on the road"
 EDGELESS = ("csv", "sbft", "crg")  # formats that draw no edges of lanes
@@ -81,7 +81,7 @@ def save(
     world: World,
     name: str = "road",
     poses: Poses | None = None,
-    placed: Others | None = None,
+    placed: Trajectories | None = None,
 ) -> tuple[Path, ...]:
     """Writes a road in the given formats. Returns the paths of all files, in the order of the formats.
 

@@ -24,7 +24,7 @@ STEP = 0.5  # m between the places for which a speed is planned
 
 
 @dataclass(frozen=True, eq=False)
-class Others:
+class Trajectories:
     """How the others on the road moved during a drive."""
 
     names: tuple[str, ...]
@@ -57,7 +57,7 @@ class Poses:
     pitch: Array
     roll: Array
     speed: Array
-    others: Others | None = None
+    others: Trajectories | None = None
     """The others on the road, from the first of these times on; None if there was nobody."""
     lights: Mapping[int, Sequence[tuple[float, Mapping[RoadEnd, str]]]] = field(default_factory=dict)
     """The traffic lights that ran, by the id of their junction: what they show from the first of these times
@@ -78,7 +78,7 @@ class Poses:
         return [each.name for each in fields(cls) if each.name not in ("others", "lights")]
 
     @classmethod
-    def of(cls, columns: Mapping[str, ArrayLike], others: Others | None = None) -> Self:
+    def of(cls, columns: Mapping[str, ArrayLike], others: Trajectories | None = None) -> Self:
         """Returns the poses from a mapping with one column per field of this class, such as the columns of a
         Drive.
 

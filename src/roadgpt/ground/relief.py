@@ -49,18 +49,18 @@ RISES = {
 
 
 @dataclass(frozen=True)
-class _Look:
+class _Hills:
     hills: float  # m, height of the hills; their length is next
     length: float
     far: float  # m, height of the hills at the horizon
     grown: float  # m from the way, where they have their height
 
 
-LOOKS: dict[LandKind, _Look] = {
-    "flat": _Look(1.5, 140.0, 8.0, 90.0),
-    "rolling": _Look(5.0, 150.0, 30.0, 80.0),
-    "hilly": _Look(14.0, 220.0, 120.0, 110.0),
-    "mountain": _Look(60.0, 420.0, 900.0, 190.0),
+HILLS: dict[LandKind, _Hills] = {
+    "flat": _Hills(1.5, 140.0, 8.0, 90.0),
+    "rolling": _Hills(5.0, 150.0, 30.0, 80.0),
+    "hilly": _Hills(14.0, 220.0, 120.0, 110.0),
+    "mountain": _Hills(60.0, 420.0, 900.0, 190.0),
 }
 """Ours: heights that fit the names in a landscape of Central Europe."""
 
@@ -282,7 +282,7 @@ def _beyond(
     places = _Places.of(flat[:, 0], flat[:, 1], way)
     heights, water = _shaped(places, np.full(len(flat), level), way, kind, stretches, seed)
     far = np.repeat(HORIZON, BEARINGS)
-    rise = LOOKS[kind].far * (0.5 + noise(flat[:, 0], flat[:, 1], 2600.0, 3, seed + 1))
+    rise = HILLS[kind].far * (0.5 + noise(flat[:, 0], flat[:, 1], 2600.0, 3, seed + 1))
     heights = heights + np.where(np.isnan(water), rise * smooth(far, 0.0, 4000.0), 0.0)
     heights[-BEARINGS:] = np.minimum(heights[-BEARINGS:], level - 10.0)
     return np.column_stack([flat, heights])
@@ -320,11 +320,11 @@ def _pulled(values: Array, known: Array) -> Array:
 def _shaped(
     places: _Places, base: Array, way: Way, kind: LandKind, stretches: Sequence[Stretch], seed: int
 ) -> tuple[Array, Array]:
-    look = LOOKS[kind]
-    hills = noise(places.x, places.y, look.length, 4, seed)
+    usual = HILLS[kind]
+    hills = noise(places.x, places.y, usual.length, 4, seed)
     if kind == "mountain":
         hills = 1.0 - 2.0 * np.abs(hills)  # ridges where noise changes its sign (Musgrave 1994)
-    heights = base + look.hills * hills * smooth(places.free, FREE, look.grown)
+    heights = base + usual.hills * hills * smooth(places.free, FREE, usual.grown)
     if kind == "mountain":  # the way lies on a slope
         uphill = places.side * _chosen(seed)
         lean = np.where(uphill > 0, 0.5, -0.4) * np.minimum(np.maximum(places.free - FREE, 0.0), 160.0)

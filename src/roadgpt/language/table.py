@@ -81,7 +81,7 @@ class RoadUser:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class PlaceRow:
     """Where somebody can be at first."""
 
     said: str
@@ -90,7 +90,7 @@ class Place:
     who: tuple[ActorKind, ...] = ()
 
 
-class Number(NamedTuple):
+class NumberRow(NamedTuple):
     """A number of a scene: its key in plans, the least and the most that is possible, and its words."""
 
     key: str
@@ -103,7 +103,7 @@ class Number(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Maneuver:
+class ManeuverRow:
     """Something that can be done."""
 
     said: str
@@ -129,7 +129,7 @@ class Falling(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Weather:
+class WeatherRow:
     """What falls or floats; ``scenes.toml`` explains the fields."""
 
     least: float
@@ -248,15 +248,15 @@ def _places(names: Sequence[str] = ANYWHERE) -> tuple[Where, ...]:
     return cast("tuple[Where, ...]", tuple(each for name in names for each in sets.get(name, [name])))
 
 
-PLACES: Mapping[Where, Place] = {
-    name: Place(**{**row, "who": _WHO[row["who"]]}) for name, row in _SCENES["places"].items()
+PLACES: Mapping[Where, PlaceRow] = {
+    name: PlaceRow(**{**row, "who": _WHO[row["who"]]}) for name, row in _SCENES["places"].items()
 }
-NUMBERS: Mapping[str, Number] = {
-    name: Number(**{"key": name, **row, "where": _places(row.get("where", ANYWHERE))})
+NUMBERS: Mapping[str, NumberRow] = {
+    name: NumberRow(**{"key": name, **row, "where": _places(row.get("where", ANYWHERE))})
     for name, row in _SCENES["numbers"].items()
 }
-MANEUVERS: Mapping[What, Maneuver] = {
-    name: Maneuver(
+MANEUVERS: Mapping[What, ManeuverRow] = {
+    name: ManeuverRow(
         **{
             **row,
             "numbers": tuple(row.get("numbers", ())),
@@ -269,8 +269,8 @@ MANEUVERS: Mapping[What, Maneuver] = {
 CUES: tuple[str, ...] = tuple(_SCENES["cues"]["rows"])
 FLOWS: Mapping[Flow, int] = {name: row["per_km"] for name, row in _SCENES["flows"].items()}
 """How many vehicles drive on each km of a lane."""
-WEATHER: Mapping[WeatherKind, Weather] = {
-    name: Weather(
+WEATHER: Mapping[WeatherKind, WeatherRow] = {
+    name: WeatherRow(
         **{
             **row,
             **{part: _words(row.get(part, {})) for part in ("words", "unseen", "none")},

@@ -61,7 +61,7 @@ from roadgpt.network.pose import STRAIGHT, NetworkPose, Point, curve_between, ta
 from roadgpt.network.stretch import road_of
 from roadgpt.road import Profile, Road, Segment
 from roadgpt.road.design import JunctionDesign, PlaceDesign, RampDesign
-from roadgpt.road.profile import Lane, Marking, Width, width_at
+from roadgpt.road.profile import LaneStrip, Marking, Width, width_at
 
 
 @dataclass
@@ -225,7 +225,7 @@ def one_way(
 def _one_way(widths: tuple[Width, ...], offset: Width, between: Marking) -> Profile:
     """Returns one Profile for all connecting roads that have the same lanes, since a Profile takes long."""
     marks: list[Marking] = [*[between] * (len(widths) - 1), "none"]
-    lanes = tuple(Lane("driving", width, mark) for width, mark in zip(widths, marks, strict=True))
+    lanes = tuple(LaneStrip("driving", width, mark) for width, mark in zip(widths, marks, strict=True))
     return Profile((), lanes, 0, "none", offset=offset)
 
 
@@ -733,7 +733,7 @@ def _with_lane(profile: Profile, width: CubicProfile, is_left: bool) -> Profile:
     """Returns the cross-section with one more lane, outside all lanes on the right or, if ``is_left``, inside
     them. The lane inside moves the line between the directions to the left."""
     if is_left:
-        lane = Lane("driving", width, "broken")
+        lane = LaneStrip("driving", width, "broken")
         offset = added([(1, profile.offset), (1, width)], FAR)
         return replace(profile, right=(lane, *profile.right), offset=offset)
     count = profile.count[0]

@@ -24,7 +24,7 @@ from roadgpt.network.paved import Area, paved_by
 from roadgpt.network.stretch import joined_heights, joined_plans, turned
 from roadgpt.network.surface import ROUND, polygons, with_shoulders
 from roadgpt.road import Edges, Profile, Road
-from roadgpt.road.profile import Lane, Marking, Width
+from roadgpt.road.profile import LaneStrip, Marking, Width
 
 FARTHEST = 40.0  # m, from the reference line; ground farther away is left out
 STEP = 0.5  # m, between the stations at which edges are computed
@@ -295,8 +295,8 @@ class Route(Road):
         left, right = _shoulders_on_ground(self, self.profile)
         profile = replace(
             self.profile,
-            left=(*self.profile.left[:-1], Lane("shoulder", left)),
-            right=(*self.profile.right[:-1], Lane("shoulder", right)),
+            left=(*self.profile.left[:-1], LaneStrip("shoulder", left)),
+            right=(*self.profile.right[:-1], LaneStrip("shoulder", right)),
         )
         return self.with_profile(profile)
 
@@ -348,11 +348,11 @@ def _profile(roads: Sequence[Road], beside: Sequence[Width], starts: Sequence[fl
     angles = [road.profile.superelevation_angle for road in roads if road.profile is not None]
     angle = _joined_widths([0.0 if each is None else each for each in angles], roads, starts)
     marking, edge = first.centre_marking, first.lanes[first.along_ids[-1]].marking
-    outer = () if right == 0 else (Lane("driving", right, edge),)
+    outer = () if right == 0 else (LaneStrip("driving", right, edge),)
     own: Marking = "broken" if outer else edge
     return Profile(
-        (Lane("driving", left, edge), Lane("shoulder", left_shoulder)),
-        (Lane("driving", width, own), *outer, Lane("shoulder", right_shoulder)),
+        (LaneStrip("driving", left, edge), LaneStrip("shoulder", left_shoulder)),
+        (LaneStrip("driving", width, own), *outer, LaneStrip("shoulder", right_shoulder)),
         0,
         marking,
         angle if isinstance(angle, CubicProfile) else None,

@@ -27,7 +27,7 @@ from roadgpt.road.design import (
     PlaceDesign,
     RampDesign,
 )
-from roadgpt.road.profile import Lane, Width, as_cubics, width_at
+from roadgpt.road.profile import LaneStrip, Width, as_cubics, width_at
 from roadgpt.road.road import reversed_cubics, reversed_road
 from roadgpt.road.world import OWN
 
@@ -340,7 +340,7 @@ def _profile(lanes: LanesDesign, shoulder: float) -> Profile:
         )
         made = replace(made, left=left, right=right)
     if lanes.divided:
-        made = replace(made, left=(Lane("median", MEDIAN, "solid"), *made.left), centre_marking="solid")
+        made = replace(made, left=(LaneStrip("median", MEDIAN, "solid"), *made.left), centre_marking="solid")
     return made if lanes.centre is None else replace(made, centre_marking=lanes.centre)
 
 

@@ -17,7 +17,7 @@ from roadgpt.campaign.model import MOST_TESTS, Cell, Result
 from roadgpt.campaign.record import Record
 from roadgpt.check import inspect
 from roadgpt.check.measures import measure
-from roadgpt.check.truth import Criterion, Truth, criteria_of
+from roadgpt.check.truth import KeptCriterion, Truth, criteria_of
 from roadgpt.errors import RoadGPTError
 from roadgpt.report.canvas import FORMATS
 from roadgpt.report.similarity import Likeness, Spread, likeness, spread
@@ -48,7 +48,7 @@ class RoadRecord:
     """The first reason why the SBFT competition's validator rejects the road, or "no road"; empty if it
     accepts the road."""
     points: Array  # points of the centre line ``(n, 2)``, metres, one every 2 m; empty if there is no road
-    kept: Mapping[Criterion, bool]
+    kept: Mapping[KeptCriterion, bool]
     """For each criterion that the description mentions, True if the road meets it."""
     likeness: Likeness | None
     """The properties by which the road is compared with other roads; None if no road was made or it cannot
@@ -108,7 +108,7 @@ class RoadGroup:
         """Returns the number of roads with a property of RoadRecord, such as "is_valid" or "has_left"."""
         return sum(getattr(road, which) for road in self.roads)
 
-    def kept(self, criterion: Criterion) -> list[bool]:
+    def kept(self, criterion: KeptCriterion) -> list[bool]:
         """Returns, for each road, whether it meets a criterion that the description mentions; if no road
         could be made, False for each requested road and the criterion "general"."""
         found = [road.kept[criterion] for road in self.roads if criterion in road.kept]
@@ -187,14 +187,16 @@ def _road_of(record: Record, cell: Cell, result: Result, truth: Truth | None, ho
     )  # fmt: skip
 
 
-def kept_of(run: Run, truth: Truth | None = None) -> dict[Criterion, bool]:
+def kept_of(run: Run, truth: Truth | None = None) -> dict[KeptCriterion, bool]:
     """Returns, for each criterion of a description, whether the road of a run meets it; every value is False
     if no road was made. ``truth`` contains the requirements; if ``truth`` is None, the requirements that the
     reader found are used. Without any requirements, the result is empty."""
     return _kept(run.road, run.brief, run.world, truth)
 
 
-def _kept(road: Road | None, brief: Brief | None, world: World, truth: Truth | None) -> dict[Criterion, bool]:
+def _kept(
+    road: Road | None, brief: Brief | None, world: World, truth: Truth | None
+) -> dict[KeptCriterion, bool]:
     points = road.centreline() if road is not None else STRAIGHT
     is_road = road is not None and bool(np.isfinite(points).all()) and len(points) > 1
     points = points if is_road else STRAIGHT

@@ -69,7 +69,7 @@ class Edges(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Lane:
+class LaneStrip:
     """One lane, or a strip beside the lanes."""
 
     kind: Kind
@@ -104,8 +104,8 @@ class Profile:
         ValueError: ``driven`` is not the index of a driving lane, a width is negative, or a width, the
             superelevation or the offset does not end with a constant."""
 
-    left: tuple[Lane, ...]
-    right: tuple[Lane, ...]
+    left: tuple[LaneStrip, ...]
+    right: tuple[LaneStrip, ...]
     driven: int = 0
     centre_marking: Marking = "broken"
     superelevation_angle: CubicProfile | None = None
@@ -137,10 +137,10 @@ class Profile:
         numbers of lanes are those along the road, one or more, and against it. The width of every lane, and
         of the shoulder on each side, is in metres. For ``superelevation_angle`` see ``Profile``."""
 
-        def side(count: int) -> tuple[Lane, ...]:
-            inner = [Lane("driving", lane_width, "broken")] * (count - 1)
-            outer = [Lane("driving", lane_width, "solid")] * min(count, 1)
-            return (*inner, *outer, *([Lane("shoulder", shoulder)] if shoulder else []))
+        def side(count: int) -> tuple[LaneStrip, ...]:
+            inner = [LaneStrip("driving", lane_width, "broken")] * (count - 1)
+            outer = [LaneStrip("driving", lane_width, "solid")] * min(count, 1)
+            return (*inner, *outer, *([LaneStrip("shoulder", shoulder)] if shoulder else []))
 
         centre: Marking = "broken" if (forward, backward) == (1, 1) else "solid"
         return cls(side(backward), side(forward), forward - 1, centre, superelevation_angle)
@@ -164,17 +164,17 @@ class Profile:
         return 1 if self.left_hand else -1
 
     @property
-    def along(self) -> tuple[Lane, ...]:
+    def along(self) -> tuple[LaneStrip, ...]:
         """The lanes in the direction of the road and their shoulder, from the centre line outwards."""
         return self.left if self.left_hand else self.right
 
     @property
-    def against(self) -> tuple[Lane, ...]:
+    def against(self) -> tuple[LaneStrip, ...]:
         """The oncoming lanes and their shoulder, from the centre line outwards."""
         return self.right if self.left_hand else self.left
 
     @cached_property
-    def lanes(self) -> dict[int, Lane]:
+    def lanes(self) -> dict[int, LaneStrip]:
         """All lanes from left to right, by their ids in OpenDRIVE: positive on the left, negative on the
         right, and 1 or -1 beside the centre line."""
         left = list(enumerate(self.left, 1))[::-1]
@@ -258,7 +258,7 @@ class Profile:
         """The smallest and the largest offset of the line between the lanes on the left and on the right."""
         return _extremes(self.offset)
 
-    def _with_offset(self, left: Sequence[Lane], right: Sequence[Lane]) -> float:
+    def _with_offset(self, left: Sequence[LaneStrip], right: Sequence[LaneStrip]) -> float:
         low, high = self.offset_range
         return max(_reach(left) + high, _reach(right) - low)
 
@@ -371,7 +371,7 @@ def as_cubics(width: Width) -> CubicProfile:
     return CubicProfile.of_rows([(0.0, (width.coefficients[0][0], 0.0, 0.0, 0.0)), *width.rows])
 
 
-def _driving(lanes: Sequence[Lane], side: int) -> tuple[int, ...]:
+def _driving(lanes: Sequence[LaneStrip], side: int) -> tuple[int, ...]:
     return tuple(side * number for number, lane in enumerate(lanes, 1) if lane.kind == "driving")
 
 
@@ -381,7 +381,7 @@ def _at(width: Width, s: ArrayLike) -> Array:
     return np.full(np.shape(s), width)
 
 
-def _sum(lanes: Sequence[Lane], s: ArrayLike) -> Array:
+def _sum(lanes: Sequence[LaneStrip], s: ArrayLike) -> Array:
     out = np.zeros(np.shape(s))
     for lane in lanes:
         out = out + _at(lane.width, s)
@@ -403,7 +403,7 @@ def _extremes(width: Width) -> tuple[float, float]:
     return width.extremes()
 
 
-def _reach(lanes: Sequence[Lane]) -> float:
+def _reach(lanes: Sequence[LaneStrip]) -> float:
     return sum(_extremes(lane.width)[1] for lane in lanes)
 
 
@@ -441,7 +441,7 @@ def profile_from_json(data: Any) -> Profile:
             _one_of(data["centre_marking"], Marking),
         )
         if MEDIAN in data:
-            median = Lane("median", _width(data[MEDIAN]), centre)
+            median = LaneStrip("median", _width(data[MEDIAN]), centre)
             left, right = (left, (median, *right)) if left_hand else ((median, *left), right)
         return Profile(
             left,
@@ -458,7 +458,7 @@ def profile_from_json(data: Any) -> Profile:
         raise UsageError(f"the profile of the road cannot be read: {error}; correct the file") from error
 
 
-def _lane_to_json(lane: Lane) -> dict[str, Any]:
+def _lane_to_json(lane: LaneStrip) -> dict[str, Any]:
     told = {name: value for name in OF_LANES if (value := getattr(lane, name)) is not None}
     return {"kind": lane.kind, "width": _written(lane.width), "marking": lane.marking, **told}
 
@@ -471,13 +471,13 @@ def _rows(cubics: CubicProfile) -> list[list[float]]:
     return [[s, *row] for s, row in cubics.rows]
 
 
-def _lanes(rows: Any) -> tuple[Lane, ...]:
+def _lanes(rows: Any) -> tuple[LaneStrip, ...]:
     if not isinstance(rows, list) or len(rows) > MOST_LANES:
         raise ValueError(f"lanes are a list of up to {MOST_LANES} objects with kind, width and marking")
     for row in rows:
         _only(row, {"kind", "width", "marking", *OF_LANES})
     return tuple(
-        Lane(
+        LaneStrip(
             _one_of(row["kind"], Kind),
             _width(row["width"]),
             _one_of(row["marking"], Marking),

@@ -54,7 +54,7 @@ OF_RUN, OF_WORLD = ROWS["run"], ROWS["world"]
 FRICTIONS = span(OF_WORLD["friction"])  # the first is not reached
 SPEEDS = tuple(speed / KMH for speed in span(OF_WORLD["speed_limit"]))  # m/s, in options and files
 LANE_WIDTHS = span(OF_WORLD["lane_width"])  # m, of the driven lane in options and files
-Criterion = Literal["r157", "reg157", "rss", "fsm", "any"]
+Avoider = Literal["r157", "reg157", "rss", "fsm", "any"]
 """Who has to avoid a collision, or it is unavoidable: one of the drivers of ``verdict.careful``, or any."""
 STEEPEST = 0.12  # ratio, largest superelevation of bends
 OWN = {"lanes": "1+1", "lane_width_end": None, "centre_line": None, "bank": "none"}
@@ -262,7 +262,7 @@ class Limits(BaseModel):
     lane_departure: bool = field(OF_WORLD["lane_departure"])
     """Whether the test also fails as soon as a front tyre crosses the outer edge of a lane marking. Source:
     UN Regulation No. 157, 5.2.1."""
-    avoidable: Criterion | None = field(OF_WORLD["avoidable"])
+    avoidable: Avoider | None = field(OF_WORLD["avoidable"])
     """None: the careful driver of UN R157 where somebody cuts in, cuts out or brakes hard ahead, as that
     regulation defines it, and else any (``verdict.avoidable``)."""
     min_radius: Positive = 14.326

@@ -10,7 +10,7 @@ import numpy as np
 
 from roadgpt.drive import Drive
 from roadgpt.errors import ExportError, UsageError
-from roadgpt.export import Others, Poses, doubts, exporter_of, save
+from roadgpt.export import Poses, Trajectories, doubts, exporter_of, save
 from roadgpt.export.ego import CAR
 from roadgpt.network import RoadEnd, network_of
 from roadgpt.road import Road, World
@@ -58,13 +58,13 @@ def poses_of(drive: Drive) -> Poses | None:
     return Poses.of(drive.columns, None if drive.others is None else _others(drive.others))
 
 
-def _others(tracks: "Tracks", samples: int | None = None) -> Others:
+def _others(tracks: "Tracks", samples: int | None = None) -> Trajectories:
     sizes = np.array([each.size for each in tracks.actors]).reshape(-1, 3)
     names, kinds = (tuple(getattr(each, what) for each in tracks.actors) for what in ("name", "kind"))
-    return Others(names, kinds, sizes, tracks.time[:samples], tracks.states[:samples])
+    return Trajectories(names, kinds, sizes, tracks.time[:samples], tracks.states[:samples])
 
 
-def _placed(run: Run, tell: Callable[[str], None]) -> Others | None:
+def _placed(run: Run, tell: Callable[[str], None]) -> Trajectories | None:
     """Returns the others as they are when the tested car begins a drive; ``tell`` gets who comes later."""
     from roadgpt.traffic.rehearsal import rehearsed  # only scenes that nobody has driven load it
 

@@ -1,4 +1,4 @@
-"""Defines the Scene: a road that can be rendered."""
+"""Defines the Scenery: a road that can be rendered."""
 
 import threading
 from collections.abc import Callable, Sequence
@@ -39,7 +39,7 @@ def landscape(road: Road, world: World) -> tuple[Ground, Trees]:
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class Scenery:
     """The scene of one road. It is built once and can then render any number of images, also in several
     threads at the same time."""
 
@@ -52,11 +52,11 @@ class Scene:
     weather: Weather | None
     _own: threading.local = field(default_factory=threading.local, repr=False)
 
-    def __reduce__(self) -> tuple[Callable[[Road, World], "Scene"], tuple[Road, World]]:
-        return Scene.of, (self.road, self.world)  # a copy has its own working memory
+    def __reduce__(self) -> tuple[Callable[[Road, World], "Scenery"], tuple[Road, World]]:
+        return Scenery.of, (self.road, self.world)  # a copy has its own working memory
 
     @classmethod
-    def of(cls, road: Road, world: World) -> "Scene":
+    def of(cls, road: Road, world: World) -> "Scenery":
         """Returns the scene of a road, or of the whole network of a route; always the same for the same
         arguments."""
         road = world.lay(road)

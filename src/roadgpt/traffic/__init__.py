@@ -45,10 +45,10 @@ def begin(
         lights = lights_of(road, world, seed)
     if replay is not None:
         from roadgpt.traffic.recording import read_recording
-        from roadgpt.traffic.replay import Replay
+        from roadgpt.traffic.replay import ReplayMover
 
         tracks = replay if isinstance(replay, Tracks) else read_recording(Path(replay)).on(road, world)
-        movers.append(Replay(tracks))
+        movers.append(ReplayMover(tracks))
     stage = Stage(road, world, seed, lights)
     if scene.actors or scene.parked:
         from roadgpt.traffic.script import Script

@@ -1,7 +1,7 @@
 """Reads recordings of how others moved: tables (.csv), and trajectories of ASAM OpenSCENARIO 1.x (.xosc; see
 ``roadgpt.export.moves``).
 
-A table has one row for each actor and moment, in any order, with the columns of ``Row``. The entity "Ego" of
+A table has one row for each actor and moment, in any order, with the columns of ``RecordedRow``. The "Ego" of
 either is the tested car and is not replayed.
 
 An actor is there from its first to its last moment; before and after, too, where it then stands still."""
@@ -48,7 +48,7 @@ Number = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False)]
 Side = Annotated[float, Field(gt=0, le=100)]
 
 
-class Row(BaseModel):
+class RecordedRow(BaseModel):
     """An actor at one moment, as a row of a table says it."""
 
     time: Number
@@ -67,7 +67,7 @@ class Row(BaseModel):
     height: Side | None = None
 
 
-COLUMNS = tuple(name for name, field in Row.model_fields.items() if field.is_required())
+COLUMNS = tuple(name for name, field in RecordedRow.model_fields.items() if field.is_required())
 Found = tuple[dict[str, tuple[Actor, FloatArray]], dict[str, list[str]]]
 """Actors and their tracks by name, and names of what was not used by the reasons why."""
 
@@ -193,7 +193,7 @@ def _table(content: bytes) -> Found:
         cells = zip_longest(header, line, fillvalue="")
         given = {name: cell for name, cell in cells if cell or name in COLUMNS}
         try:
-            row = Row.model_validate(given)
+            row = RecordedRow.model_validate(given)
         except ValidationError as error:
             column = str(error.errors()[0]["loc"][0])
             said = f"row {number}: {column} is '{given.get(column, '')[:40]}'"
@@ -206,7 +206,7 @@ def _table(content: bytes) -> Found:
         tracks[row.id].append([row.time, row.x, row.y, math.nan, row.heading, row.speed])
     tested = [name for name in actors if name.casefold() == TESTED.casefold()]
     found = {name: (actors[name], _sorted(tracks[name], name)) for name in actors if name not in tested}
-    unused = [name for name in header if name not in Row.model_fields]
+    unused = [name for name in header if name not in RecordedRow.model_fields]
     return found, {"not replayed, because it is the tested car": tested, "columns that are not used": unused}
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from roadgpt.traffic.actor import SPEED, STEP, STILL, Actor, FloatArray, TestedCar, Tracks
 
 
-class Replay:
+class ReplayMover:
     """Moves actors along recorded tracks, whatever anybody else does. Who stands at the end of the tracks
     stays there; all others are gone."""
 

@@ -29,7 +29,7 @@ from roadgpt.network.landscape import horizon_around
 from roadgpt.network.lanes import lanes_of
 from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y
 from roadgpt.traffic.way import LEAST_GRIP, Way
-from roadgpt.verdict.careful import CAREFUL, DRIVERS, FULL, Driver, Moment, drive_on, stopping_distance
+from roadgpt.verdict.careful import CAREFUL, DRIVERS, FULL, DriverModel, Moment, drive_on, stopping_distance
 from roadgpt.verdict.contact import middles, separation
 from roadgpt.verdict.criteria import OVER_BY, limits_at
 from roadgpt.verdict.measures import ACROSS, ALONG, Line, Measures, measure
@@ -38,7 +38,7 @@ from roadgpt.verdict.verdict import PARTLY, Incident, percent
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
     from roadgpt.road import Road, World
-    from roadgpt.road.world import Criterion
+    from roadgpt.road.world import Avoider
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -62,7 +62,7 @@ FRONTS = np.array(
 """R157, 5.2.3.3: speeds in m/s and the least time gaps in s; the least distance is 2 m."""
 
 
-CRITERIA: "Mapping[Criterion, tuple[str, tuple[Driver, ...]]]" = {
+CRITERIA: "Mapping[Avoider, tuple[str, tuple[DriverModel, ...]]]" = {
     "r157": ("the careful driver of UN R157", DRIVERS[:1]),
     "reg157": ("Reg157", DRIVERS[1:2]),
     "fsm": ("FSM", DRIVERS[2:3]),
@@ -77,7 +77,7 @@ class Avoidance(NamedTuple):
 
     by: tuple[str, ...]
     """Those of the four drivers that avoid it."""
-    criterion: "Criterion"
+    criterion: "Avoider"
     """By which of CRITERIA it is judged whether it was avoidable."""
     is_avoidable: bool
     """Whether it was, by this criterion."""
@@ -148,7 +148,7 @@ def _braked_for_nothing(
     return "" if is_called else f"had braked with {most:.1f} m/s2 and nothing in its way called for it"
 
 
-def _course(driver: Driver, meeting: "_Encounter") -> str:
+def _course(driver: DriverModel, meeting: "_Encounter") -> str:
     """Returns how it ends for a driver in words."""
     places, speeds = drive_on(driver, meeting.seen, meeting.free, FINE, float(meeting.places[0]))
     ahead = meeting.along - places

@@ -62,7 +62,7 @@ class Moment(NamedTuple):
         return max(min(acceleration, self.grip), LEAST_GRIP)
 
 
-class Driver(NamedTuple):
+class DriverModel(NamedTuple):
     """One of the four models."""
 
     said: str
@@ -136,17 +136,17 @@ def _share(gap: float, unsafe: float, safe: float) -> float:
     return 1.0 if gap <= unsafe else max((safe - gap) / (safe - unsafe), 0.0) if safe > unsafe else 0.0
 
 
-CAREFUL = Driver("careful driver", _careful, DELAY, RELEASED, JERK)
+CAREFUL = DriverModel("careful driver", _careful, DELAY, RELEASED, JERK)
 DRIVERS = (
     CAREFUL,
-    Driver("Reg157", _reg157, REACTS, 0.0, math.inf),
-    Driver("FSM", _fsm, DELAY, 0.0, JERK),
-    Driver("RSS", _rss, DELAY, 0.0, JERK),
+    DriverModel("Reg157", _reg157, REACTS, 0.0, math.inf),
+    DriverModel("FSM", _fsm, DELAY, 0.0, JERK),
+    DriverModel("RSS", _rss, DELAY, 0.0, JERK),
 )
 
 
 def drive_on(
-    driver: Driver,
+    driver: DriverModel,
     seen: Callable[[int, float, float, float], Moment],
     free: Sequence[float],
     step: float,

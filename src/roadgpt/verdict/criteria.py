@@ -41,7 +41,7 @@ STOOD, PATIENCE, FREE = 0.1, 30.0, 10.0  # m/s, s, m
 OVER, OVER_BY, TOO_FAST = 1.05, 1.0, 1.0  # ratio, m/s, s
 
 
-class Evidence:
+class Judged:
     """A drive that is judged, and what several criteria ask about it."""
 
     def __init__(self, road: "Road", drive: "Drive", world: "World") -> None:
@@ -106,27 +106,27 @@ class Evidence:
         return [one for kind, time, other in every for one in self.began(kind, [time], other)]
 
 
-def _out_of_lane(case: Evidence) -> list[Incident]:
+def _out_of_lane(case: Judged) -> list[Incident]:
     return case.began("out of lane", _lasting(case.drive["time"], case.is_out))
 
 
-def _is_beside(case: Evidence) -> BoolArray:
+def _is_beside(case: Judged) -> BoolArray:
     edges, t = case.world.profile_of(case.road).edges(case.drive["s"]), case.drive["t"]
     return np.asarray((t > edges.left) | (t < edges.right))
 
 
-def _wrong_ways(case: Evidence) -> list[Incident]:
+def _wrong_ways(case: Judged) -> list[Incident]:
     turned = np.abs(wrap_angle(case.drive["heading"] - case.road.heading(case.drive["s"])))
     is_wrong = (turned > BACKWARDS) & ~_is_beside(case)
     return case.began("wrong way", _lasting(case.drive["time"], is_wrong, BACK))
 
 
-def _blocked(case: Evidence) -> list[Incident]:
+def _blocked(case: Judged) -> list[Incident]:
     is_free = case.measured.gap.min(axis=1, initial=np.inf) > FREE
     return case.began("blocked", _lasting(case.measured.time, (case.speed < STOOD) & is_free, PATIENCE))
 
 
-def _speeding(case: Evidence) -> list[Incident]:
+def _speeding(case: Judged) -> list[Incident]:
     speed, limit = case.drive["speed"], limits_at(case.road, case.world, case.drive["s"])
     fast = (speed > OVER * limit) & (speed > limit + OVER_BY)
     return case.began("speeding", _lasting(case.drive["time"], fast, TOO_FAST))
@@ -147,7 +147,7 @@ def _lasting(time: FloatArray, holds: BoolArray, least: float = 0.0) -> list[flo
     return [float(time[first]) for first, last in stretches if time[last] - time[first] >= least - 1e-9]
 
 
-def _wrong_turns(case: Evidence) -> list[Incident]:
+def _wrong_turns(case: Judged) -> list[Incident]:
     from shapely import contains_xy
 
     from roadgpt.network.paved import ribbon
@@ -173,7 +173,7 @@ def _wrong_turns(case: Evidence) -> list[Incident]:
     return case.began("wrong turn", _lasting(drive["time"], wrong))
 
 
-def _off_road(case: Evidence) -> list[Incident]:
+def _off_road(case: Judged) -> list[Incident]:
     """The rear axle is assumed to be as far behind the middle of the car as the front axle is ahead of it."""
     import shapely
 
@@ -189,7 +189,7 @@ def _off_road(case: Evidence) -> list[Incident]:
     return case.began("off road", _lasting(drive["time"], off))
 
 
-def _stops_missed(case: Evidence) -> list[Incident]:
+def _stops_missed(case: Judged) -> list[Incident]:
     drive, missed = case.drive, list[float]()
     front = drive["s"] + drive.car.ahead + drive.car.length / 2
     for line in [way.stop_line for way in case.road.passages if way.stop_line is not None]:
@@ -205,7 +205,7 @@ class Criterion(NamedTuple):
 
     name: Cause | IncidentKind
     source: str
-    find: Callable[[Evidence], Sequence[Incident]] | None = None
+    find: Callable[[Judged], Sequence[Incident]] | None = None
     """Finds it; None: a drive ends by it."""
     said: str = ""
     """As an incident, in words, before how often it happened."""
@@ -295,7 +295,7 @@ first of all, and at one step rather than the lane and the end of the drive."""
 NAMED: dict[str, Criterion] = {each.name: each for each in CRITERIA}
 
 
-def incidents_of(case: Evidence) -> tuple[Incident, ...]:
+def incidents_of(case: Judged) -> tuple[Incident, ...]:
     """Returns what went wrong in a drive, in order of time."""
     has = (ROUTE if case.is_route else set()) | (OTHERS if case.drive.others is not None else set())
     found = [one for each in CRITERIA if each.find and each.needs <= has for one in each.find(case)]
@@ -303,7 +303,7 @@ def incidents_of(case: Evidence) -> tuple[Incident, ...]:
 
 
 def first_failure(
-    case: Evidence, incidents: Sequence[Incident], known: tuple[int, Cause | None] | None
+    case: Judged, incidents: Sequence[Incident], known: tuple[int, Cause | None] | None
 ) -> tuple[int, Criterion | None]:
     """Returns the step at which a drive failed and by which criterion; the last step and None if it did not.
     What decides without incidents may be ``known``. Raises UsageError if the drive was ended for less than

@@ -11,7 +11,7 @@ from roadgpt.language.table import VEHICLES
 from roadgpt.road.world import share_in_words
 from roadgpt.traffic.actor import SPEED
 from roadgpt.traffic.traffic import LATE
-from roadgpt.verdict.criteria import FREE, NAMED, SUCCESS, Criterion, Evidence, first_failure, incidents_of
+from roadgpt.verdict.criteria import FREE, NAMED, SUCCESS, Criterion, Judged, first_failure, incidents_of
 from roadgpt.verdict.oracle import EPSILON, consult, has_departed, margins
 from roadgpt.verdict.verdict import (
     DEPARTURES,
@@ -63,7 +63,7 @@ def judge(
 
     Raises:
         UsageError: The drive was stopped at a smaller tolerance than ``world.limits.oob_tolerance``."""
-    case = Evidence(world.lay(road), drive, world)
+    case = Judged(world.lay(road), drive, world)
     incidents = incidents_of(case)
     step, failed = first_failure(case, incidents, known if drive.others is None else None)
     behind = _behind(case) if failed and failed.name in ("stuck", "timeout") else ""
@@ -132,7 +132,7 @@ def judge(
 
 
 def _blame(
-    case: Evidence, incidents: Sequence[Incident], hit: Incident | None, is_avoidance_asked: bool
+    case: Judged, incidents: Sequence[Incident], hit: Incident | None, is_avoidance_asked: bool
 ) -> "tuple[Avoidance | None, Law | None, Fault | None]":
     """Returns whether the first contact could have been avoided, what the law says, and whose fault it is."""
     found, (road, drive, world) = None, (case.road, case.drive, case.world)
@@ -148,12 +148,12 @@ def _blame(
     return found, law, fault_of(law, hit.contact, bool(found and found.is_own_doing))
 
 
-def _side(case: Evidence, step: int) -> Side:
+def _side(case: Judged, step: int) -> Side:
     middle = case.world.profile_of(case.road).middle(case.drive["s"][step])
     return "left" if case.drive["t"][step] > middle else "right"
 
 
-def _least(case: Evidence, hit: Incident | None) -> tuple[float | None, float | None]:
+def _least(case: Judged, hit: Incident | None) -> tuple[float | None, float | None]:
     """Returns the least gap in metres and the least time to collision in seconds up to the first contact."""
     if case.drive.others is None:
         return None, None
@@ -207,7 +207,7 @@ def far_beyond(beyond: float) -> str:
     return f"{beyond:.2f} m beyond the marking" if beyond >= LEAST else "on the marking"
 
 
-def _behind(case: Evidence) -> str:
+def _behind(case: Judged) -> str:
     """Returns in words behind whom of a scene the car stayed at the end; empty if the way was free."""
     others = case.drive.others
     if others is None or not others.actors or not case.world.scene.actors:
@@ -236,7 +236,7 @@ def _kept(drive: "Drive", world: "World", margin: float, beyond: float, behind: 
 
 
 def _failed(
-    case: Evidence, step: int, failed: Criterion, side: Side | None, contact: Incident | None,
+    case: Judged, step: int, failed: Criterion, side: Side | None, contact: Incident | None,
     whom: str | None, fault: Fault | None,
 ) -> str:  # fmt: skip
     (road, drive, world), cause = (case.road, case.drive, case.world), failed.name

@@ -36,7 +36,7 @@ from roadgpt.brief.plan import (
     scene_plan,
     written,
 )
-from roadgpt.brief.scene import Action, Land, Patch, Role, Scene
+from roadgpt.brief.scene import Action, Land, Role, Scene, SlipperyPlace
 from roadgpt.errors import BriefError, EditError
 from roadgpt.language.names import Kind, Sharpness, Side
 from roadgpt.language.table import (
@@ -58,7 +58,7 @@ ACTORS, LANDS = (*ROAD_USERS, "actor"), (*LANDFORMS, "landscape")
 LISTS: Mapping[str, tuple[str, type[Frozen]]] = {
     **dict.fromkeys(ACTORS, ("actors", Role)),
     **dict.fromkeys(LANDS, ("landscape", Land)),
-    "slippery": ("slippery", Patch),
+    "slippery": ("slippery", SlipperyPlace),
 }
 """The parts of which a scene can have several, each with the field that holds them, and their type."""
 SINGLE: Mapping[str, tuple[str, ...]] = {

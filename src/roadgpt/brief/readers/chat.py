@@ -32,7 +32,7 @@ from roadgpt.language.table import (
     ROADS,
     SURFACES,
     WEATHER,
-    Maneuver,
+    ManeuverRow,
 )  # fmt: skip
 from roadgpt.reading import read_text
 
@@ -58,7 +58,7 @@ def _or(names: Iterable[str]) -> str:
 def _rows() -> dict[str, str]:
     """Returns what the rules tell of the table of the language."""
 
-    def first_number(row: Maneuver) -> str:
+    def first_number(row: ManeuverRow) -> str:
         return f" ({NUMBERS[row.numbers[0]].unit})" if row.numbers and row.usual else ""
 
     lone, sided = ([name for name, row in PLACES.items() if bool(row.side) == has] for has in (False, True))

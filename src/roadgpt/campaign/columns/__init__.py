@@ -1,6 +1,6 @@
 """Columns of tests: numbers that are computed of each test, by the names that ``results.csv`` has for them.
 
-A plug-in ``columns`` is a ``Columns``. Those of its numbers that are ``told`` also stand in JUnit, in lines
+A plug-in ``columns`` is a ``ResultColumns``. Of its numbers those ``told`` also stand in JUnit, in lines
 of JSON, in what ``run`` and ``show`` print, and in the report's table of failures."""
 
 from collections.abc import Callable, Mapping, Sequence
@@ -20,7 +20,7 @@ class Told(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Columns:
+class ResultColumns:
     """Some columns of tests."""
 
     of: Callable[[Run], Mapping[str, float]]
@@ -47,7 +47,7 @@ def features_in(run: Run, told_alone: bool = False) -> dict[str, float]:
     found: dict[str, float] = {}
     is_invalid = run.road is None or (run.findings and run.drive is None)
     for name in () if is_invalid else plugins.names("columns"):
-        part: Columns = plugins.find("columns", name)
+        part: ResultColumns = plugins.find("columns", name)
         try:
             own = {} if told_alone and not part.told else {**part.of(run)}
             if twice := found.keys() & own.keys():

@@ -1,6 +1,6 @@
 """The features of the SBFT competition, as ``run.execution`` defines them."""
 
-from roadgpt.campaign.columns import Columns
+from roadgpt.campaign.columns import ResultColumns
 from roadgpt.run import Run
 
 
@@ -12,7 +12,7 @@ def _numbers(run: Run) -> dict[str, float]:
     return features_of(run.road.centreline(PER_POINT), records)
 
 
-columns = Columns(
+columns = ResultColumns(
     _numbers,
     bounds={
         "MAX_CURV": (0.0, 0.07),  # 1/m: the competition's tightest turn is 0.0698

@@ -6,7 +6,7 @@ IMPACT        difference of the velocities in the first collision, km/h
 GAP           least gap to somebody ahead in the same lane, m; 0 at a collision
 TTC           least time to collision, s"""
 
-from roadgpt.campaign.columns import Columns, Told
+from roadgpt.campaign.columns import ResultColumns, Told
 from roadgpt.run import Run
 
 COUNTED = {
@@ -31,7 +31,7 @@ def _numbers(run: Run) -> dict[str, float]:
     return out
 
 
-columns = Columns(
+columns = ResultColumns(
     _numbers,
     told={
         "IMPACT": Told("impact_kmh", "impact {:.0f} km/h".format),

@@ -49,11 +49,11 @@ class Ray(WorkerPool):
             self._ray.shutdown()
             self._is_ours = False
 
-    def _start(self) -> "Actor":
-        return Actor(self._ray, self._staff.patience, self._workers)
+    def _start(self) -> "RayWorker":
+        return RayWorker(self._ray, self._staff.patience, self._workers)
 
 
-class Actor(Worker):
+class RayWorker(Worker):
     """A worker, which Ray runs on some machine."""
 
     def __init__(self, ray: Any, patience: float, workers: Sequence[Worker]) -> None:

@@ -19,9 +19,9 @@ from shapely.geometry import LineString
 from roadgpt.brief.visibility import LOW_SUN, amount_in
 from roadgpt.export.ego import (
     CAR,
-    Others,
     Poses,
     SpeedProfile,
+    Trajectories,
     calm_profile,
     goal_of,
     on_the_ground,
@@ -75,7 +75,7 @@ class OpenScenario:
         path: Path,
         world: World,
         poses: Poses | None = None,
-        placed: Others | None = None,
+        placed: Trajectories | None = None,
     ) -> None:
         """Writes the scenario, and beside it NAME.xodr (the road) and NAME.route.json (the lanes to drive).
 
@@ -91,7 +91,7 @@ class OpenScenario:
 
 
 def scenario(
-    road: Road, world: World, map_: str, poses: Poses | None = None, placed: Others | None = None
+    road: Road, world: World, map_: str, poses: Poses | None = None, placed: Trajectories | None = None
 ) -> XmlElement:
     """Returns a scenario in which the car slows down for bends, and drives to the end of the road or of the
     route. ``map_`` is the path of the OpenDRIVE file, relative to the scenario. The others and the lights do
@@ -237,7 +237,7 @@ class Moved(NamedTuple):
         return -REAR * float(self.size[0]) if ROAD_USERS[self.kind].group == "vehicle" else 0.0
 
 
-def _moved(others: Others, end: float) -> Iterator[Moved]:
+def _moved(others: Trajectories, end: float) -> Iterator[Moved]:
     """Yields how each of the others moved until ``end``; who comes, goes and comes again is several, and who
     comes for less than a sample's time is left out."""
     step = others.time[1] if len(others.time) > 1 else 1.0

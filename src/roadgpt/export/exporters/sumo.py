@@ -90,7 +90,7 @@ def _nodes(shape: Array) -> XmlElement:
     return out
 
 
-class Way(NamedTuple):
+class SumoEdge(NamedTuple):
     """The lanes of one direction, which lie to the right of a line, from the inside out."""
 
     name: str
@@ -100,7 +100,7 @@ class Way(NamedTuple):
     widths: list[float]  # m
 
 
-def _ways(road: Road, profile: Profile) -> list[Way]:
+def _ways(road: Road, profile: Profile) -> list[SumoEdge]:
     at, s = stations(road, profile.paved_reach), road.sample().s
     found, sides = [], (("road", profile.along_ids), ("back", profile.against_ids))
     for name, ids in sides:
@@ -109,7 +109,7 @@ def _ways(road: Road, profile: Profile) -> list[Way]:
             shape = np.round(line(road, at, inner), DECIMALS) + 0.0
             widths = [_mean(profile.lanes[lane].width, s) for lane in ids]
             ends = ("start", "end") if name == "road" else ("end", "start")
-            found.append(Way(name, *ends, shape if name == "road" else shape[::-1], widths))
+            found.append(SumoEdge(name, *ends, shape if name == "road" else shape[::-1], widths))
     return found
 
 
@@ -136,7 +136,7 @@ def speed_zones(road: Road, world: World) -> list[SpeedZone]:
     return out
 
 
-def _edges(ways: Sequence[Way], world: World, limits: Sequence[SpeedZone]) -> XmlElement:
+def _edges(ways: Sequence[SumoEdge], world: World, limits: Sequence[SpeedZone]) -> XmlElement:
     along = float(np.hypot(*np.diff(ways[-1].shape[:, :2], axis=0).T).sum())
     ends = [*(limit.start for limit in limits[1:]), along]
     back = [SpeedZone(along - end, limit.speed) for end, limit in zip(ends, limits, strict=True)][::-1]

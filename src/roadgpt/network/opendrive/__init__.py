@@ -19,7 +19,7 @@ from roadgpt.network.network import MOST_ROADS, Leg, Network
 from roadgpt.network.opendrive.junctions import Joining
 from roadgpt.network.opendrive.one_road import ImportedRoad, read_opendrive
 from roadgpt.network.opendrive.roads import FileRoad, left_out, read_road, unread, world_values
-from roadgpt.network.opendrive.tree import Remarks, read_tree
+from roadgpt.network.opendrive.tree import MapRemarks, read_tree
 
 __all__ = ["ImportedMap", "ImportedRoad", "read_map", "read_opendrive"]
 
@@ -56,7 +56,7 @@ def read_map(path: Path | str) -> ImportedMap:
 
     Raises UsageError if the file cannot be read or is too large, is not OpenDRIVE, or has no road that can be
     read; a road that cannot be read is left out, and the remarks say why."""
-    path, remarks = Path(path), Remarks()
+    path, remarks = Path(path), MapRemarks()
     roads, junctions, passed, others = list[FileRoad](), list[Element](), Counter[str](), set[str]()
 
     def take(node: Element, skipped: Counter[str]) -> None:

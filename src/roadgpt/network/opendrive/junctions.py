@@ -34,8 +34,8 @@ from roadgpt.network.network import (
     Roundabout,
     kinds_of,
 )
-from roadgpt.network.opendrive.roads import UNLINKED, FileRoad, RoadBuilder, Way
-from roadgpt.network.opendrive.tree import Remarks, number
+from roadgpt.network.opendrive.roads import UNLINKED, FileRoad, OneWay, RoadBuilder
+from roadgpt.network.opendrive.tree import MapRemarks, number
 from roadgpt.network.pose import Point
 
 PARALLEL = 30.0  # degrees; arms that are closer together belong to a merge or an exit
@@ -73,7 +73,7 @@ Lanes = dict[int, int]
 class Joining:
     """The roads of a file as those of a network, and what joins them."""
 
-    def __init__(self, roads: Sequence[FileRoad], junctions: Sequence[Element], remarks: Remarks) -> None:
+    def __init__(self, roads: Sequence[FileRoad], junctions: Sequence[Element], remarks: MapRemarks) -> None:
         self.remarks = remarks
         self.files = {road.id: road for road in roads}
         if len(self.files) < len(roads):
@@ -83,7 +83,7 @@ class Joining:
         self.members: dict[int, NetworkRoad] = {}
         self.parts: dict[str, list[int]] = defaultdict(list)
         self.file_of: dict[int, FileRoad] = {}
-        self.ways: dict[str, list[tuple[int, Way]]] = {}
+        self.ways: dict[str, list[tuple[int, OneWay]]] = {}
         self.continuations: dict[frozenset[RoadEnd], Continuation] = {}
         self.used = set[Element]()  # the signals and lines that a junction has
         self.junctions: dict[str, Junction] = {}
@@ -417,7 +417,7 @@ class Joining:
         return found
 
 
-def tell_unread(road: Element, remarks: Remarks, where: str, used: Collection[Element] | None) -> None:
+def tell_unread(road: Element, remarks: MapRemarks, where: str, used: Collection[Element] | None) -> None:
     """Adds remarks about objects and signs of a road that are not used; None says that there is no junction
     to which crosswalks, signs and lights would belong."""
     for node in road.findall("objects/object"):

@@ -18,7 +18,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.geometry.elevation import ROUNDING, Cubic, Row, closed
 from roadgpt.geometry.fitting import SampledLine, clothoids, fitted, misses, smoothed, turns_back
 from roadgpt.geometry.pieces import advance
-from roadgpt.network.opendrive.tree import Remarks, number
+from roadgpt.network.opendrive.tree import MapRemarks, number
 from roadgpt.road.road import check_length
 
 KNOWN = ("line", "arc", "spiral", "poly3", "paramPoly3")
@@ -288,7 +288,7 @@ class PlacedLine(NamedTuple):
         return closed(found, self.station(end) - first)
 
 
-def placed_line(road: Element, remarks: Remarks, where: str) -> PlacedLine:
+def placed_line(road: Element, remarks: MapRemarks, where: str) -> PlacedLine:
     """Returns the reference line of a road, whose records are in order. Raises UsageError if it cannot be
     read, or if no curve follows it."""
     line = reference_line(road)

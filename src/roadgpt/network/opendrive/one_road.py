@@ -22,7 +22,7 @@ from roadgpt.network.opendrive.roads import (
     unread,
     world_values,
 )
-from roadgpt.network.opendrive.tree import DRIVING, NUMBER, Remarks, read_tree
+from roadgpt.network.opendrive.tree import DRIVING, NUMBER, MapRemarks, read_tree
 from roadgpt.network.road_or_route import ONLY
 from roadgpt.network.route import Route
 from roadgpt.network.stretch import turned
@@ -95,7 +95,7 @@ def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:
     except UsageError as error:
         raise UsageError(f"{path}: {error}") from error
     ((_, node, passed),) = found
-    remarks, id_ = Remarks(of_one_road=True), node.get("id", "?")[:40]
+    remarks, id_ = MapRemarks(of_one_road=True), node.get("id", "?")[:40]
     try:
         if road is None and len(ids) > 1:
             which = f"the longest of {len(ids)} with a driving lane"
@@ -130,7 +130,7 @@ def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:
     )
 
 
-def _alone(file: FileRoad, remarks: Remarks) -> tuple[Road, dict[str, float]]:
+def _alone(file: FileRoad, remarks: MapRemarks) -> tuple[Road, dict[str, float]]:
     """Returns a road that leads in the direction in which most of its lanes are driven on the right, and what
     it states about its speed limit and friction; where traffic drives on the left, that of the mirror image.
     Raises UsageError if no road file can hold it."""
@@ -183,7 +183,7 @@ def _painted(profile: Profile) -> Profile:
     return replace(profile, left=tuple(left), right=tuple(right), centre_marking=centre)
 
 
-def _driven(profile: Profile, length: float, remarks: Remarks) -> Profile:
+def _driven(profile: Profile, length: float, remarks: MapRemarks) -> Profile:
     """Returns the cross-section with the lane that the car keeps to, which is wide enough everywhere."""
     widths = {n: as_cubics(profile.right[n - 1].width) for n in (-each for each in profile.along_ids)}
     wide = [n for n, width in widths.items() if not width.beyond(LANE_WIDTHS[0], inf)]

@@ -21,10 +21,10 @@ from roadgpt.geometry import CubicProfile, ElevationProfile, GradeProfile
 from roadgpt.geometry.elevation import SHORTEST, Row, closed, constant, shifted, value_at
 from roadgpt.network.lane_along import added
 from roadgpt.network.opendrive.line import PlacedLine, placed_line
-from roadgpt.network.opendrive.tree import DRIVING, Remarks, cubics, in_order, number
+from roadgpt.network.opendrive.tree import DRIVING, MapRemarks, cubics, in_order, number
 from roadgpt.network.stretch import turned
 from roadgpt.road import Profile, Road
-from roadgpt.road.profile import FASTEST, LINE, MOST_LANES, STEEPEST, WIDEST, Kind, Lane, Marking, Width
+from roadgpt.road.profile import FASTEST, LINE, MOST_LANES, STEEPEST, WIDEST, Kind, LaneStrip, Marking, Width
 from roadgpt.road.road import check_grade
 from roadgpt.road.world import FRICTIONS, SPEEDS
 
@@ -165,7 +165,7 @@ class FileRoad:
         return {(own, sign * there) for own, there in self.links[0 if contact == "start" else 1]}
 
 
-def read_road(node: Element, remarks: Remarks) -> FileRoad | None:
+def read_road(node: Element, remarks: MapRemarks) -> FileRoad | None:
     """Returns a road of the file, or None if it has no lane that cars may use. Raises UsageError if its line
     or its lanes cannot be read."""
     road_id = node.get("id", "?")[:40]
@@ -223,7 +223,7 @@ def read_road(node: Element, remarks: Remarks) -> FileRoad | None:
     )
 
 
-def _signed(road: Element, remarks: Remarks, where: str) -> bool:
+def _signed(road: Element, remarks: MapRemarks, where: str) -> bool:
     """Gives the lanes of each side ids of the sign that they must have, also in their links; returns whether
     all lanes had the other one."""
     wrong, right = 0, 0
@@ -268,7 +268,7 @@ def left_out(passed: Counter[str], others: Iterable[str], header: Iterable[str])
     return (f"left out: {', '.join(sorted(parts))}",) if parts else ()
 
 
-def world_values(lanes: Sequence[tuple[float, Lane]]) -> tuple[dict[str, float], tuple[str, ...]]:
+def world_values(lanes: Sequence[tuple[float, LaneStrip]]) -> tuple[dict[str, float], tuple[str, ...]]:
     """Returns the speed limit in m/s and the friction that hold on most metres of lanes, each given with its
     length, as the fields of a World; see ``ImportedMap.world_values``."""
     found, remarks = dict[str, float](), list[str]()
@@ -403,7 +403,7 @@ def _slots(parts: FileSections, side: int) -> list[Slot]:
     return slots
 
 
-def speed_of(node: Element, remarks: Remarks, where: str) -> float | None:
+def speed_of(node: Element, remarks: MapRemarks, where: str) -> float | None:
     """Returns the speed limit in m/s of an element ``speed``; None if it states none."""
     text = node.get("max")
     if text is None:
@@ -415,7 +415,7 @@ def speed_of(node: Element, remarks: Remarks, where: str) -> float | None:
     return _usable(value, "speed limit", remarks, where)
 
 
-def _usable(value: float, what: str, remarks: Remarks, where: str) -> float | None:
+def _usable(value: float, what: str, remarks: MapRemarks, where: str) -> float | None:
     if 0 < value <= FASTEST:
         return value
     said = said_of(what, value) if value else f"0{', or of no limit,' * (what == 'speed limit')}"
@@ -523,7 +523,7 @@ def _sum(terms: Sequence[tuple[float, Width]], length: float) -> Width:
     return _constant(closed(total.rows, length)) if isinstance(total, CubicProfile) else total
 
 
-class Stretch(NamedTuple):
+class Stated(NamedTuple):
     """A part of a lane between two stations in metres, with what is stated there; None if nothing is."""
 
     start: float
@@ -535,18 +535,18 @@ Nodes = Sequence[tuple[float, float, Element]]
 """The XML elements of a lane, with the stations in metres between which each holds."""
 
 
-def stated(lanes: Nodes, tag: str, read: Callable[[Element], Any]) -> list[Stretch]:
+def stated(lanes: Nodes, tag: str, read: Callable[[Element], Any]) -> list[Stated]:
     """Returns what the records ``tag`` of a lane state, in order along the road. ``read`` reads a record."""
-    out: list[Stretch] = []
+    out: list[Stated] = []
     for start, end, lane in lanes:
         nodes = lane.findall(tag)
         starts = [start + number(node, "sOffset", 0.0) for node in nodes]
         held = [start, *(min(max(each, start), end) for each in starts), end]
-        out += map(Stretch, held, held[1:], [None, *map(read, nodes)])
+        out += map(Stated, held, held[1:], [None, *map(read, nodes)])
     return out
 
 
-def longest_first(stretches: Iterable[Stretch]) -> list[Any]:
+def longest_first(stretches: Iterable[Stated]) -> list[Any]:
     """Returns the values that are stated, that of the longest part of the road first."""
     lengths: dict[Any, float] = {}
     for start, end, value in stretches:
@@ -558,7 +558,7 @@ def longest_first(stretches: Iterable[Stretch]) -> list[Any]:
 class RoadBuilder:
     """Makes the roads of a network from those of a file."""
 
-    def __init__(self, road: FileRoad, remarks: Remarks) -> None:
+    def __init__(self, road: FileRoad, remarks: MapRemarks) -> None:
         self.file, self.remarks, self.name = road, remarks, f"road {road.id}"
 
     def build(self, parts: FileSections) -> tuple[Road, list[dict[int, int]]]:
@@ -567,7 +567,7 @@ class RoadBuilder:
         sections, ids, sides = parts.sections, [dict[int, int]() for _ in parts.sections], []
         start, end = sections[0].start, sections[-1].end
         for side in (1, -1):
-            made = list[Lane]()
+            made = list[LaneStrip]()
             slots = _slots(parts, side)
             if len(slots) > MOST_LANES:
                 self.remarks.add(f"lanes beyond the first {MOST_LANES} of a side are left out", self.name)
@@ -614,7 +614,7 @@ class RoadBuilder:
             rows = limited(rows, end, *limits)
         return self.file.line.moved(rows, start, end)
 
-    def _lane(self, sections: Sequence[FileSection], slot: Slot) -> Lane | None:
+    def _lane(self, sections: Sequence[FileSection], slot: Slot) -> LaneStrip | None:
         rows, start, end = list[Row](), sections[0].start, sections[-1].end
         for n, section in enumerate(sections):
             if n in slot:
@@ -637,9 +637,9 @@ class RoadBuilder:
             if any(node.find(tag) is not None for _, _, node in nodes for tag in ("speed", "material")):
                 what = "left out: speed limits and frictions of lanes that are not for cars"
                 self.remarks.add(what, self.name)
-            return Lane(kind, _constant(width), self._marking(nodes))
+            return LaneStrip(kind, _constant(width), self._marking(nodes))
         limit, friction = (self._used(nodes, what) for what in ("speed limit", "friction"))
-        return Lane(kind, _constant(width), self._marking(nodes), limit, friction)
+        return LaneStrip(kind, _constant(width), self._marking(nodes), limit, friction)
 
     def _marking(self, lanes: Nodes) -> Marking:
         """Returns the marking that a lane has on the longest part of its sections."""
@@ -668,14 +668,14 @@ class RoadBuilder:
             self.remarks.add(told, self.name, f"{changes}; {said_of(what, values[0])} is taken")
         return values[0] if values else None
 
-    def _or_of_road(self, own: Iterable[Stretch]) -> list[Stretch]:
+    def _or_of_road(self, own: Iterable[Stated]) -> list[Stated]:
         """Returns the speed limits of a lane and, where it states none, those of its road."""
-        found = list[Stretch]()
+        found = list[Stated]()
         for start, end, value in own:
             cuts = [start, *(s for s, _ in self.file.speeds if start < s < end), end]
             for s, until in pairwise(cuts):
                 of_road = next((speed for at, speed in reversed(self.file.speeds) if at <= s), None)
-                found.append(Stretch(s, until, of_road if value is None else value))
+                found.append(Stated(s, until, of_road if value is None else value))
         return found
 
     def _friction(self, node: Element) -> float | None:
@@ -683,18 +683,18 @@ class RoadBuilder:
             return None
         return _usable(number(node, "friction"), "friction", self.remarks, self.name)
 
-    def ways(self) -> "list[Way]":
+    def ways(self) -> "list[OneWay]":
         """Returns the roads of a connecting road, one for each direction in which lanes lead through it."""
         road, ids = self.build(self.file.whole)
         side = 1 if self.file.left_hand else -1
         found = [self._way(road, ids, sign, sign == side) for sign in (side, -side)]
         return [way for way in found if way is not None]
 
-    def _way(self, road: Road, ids: Sequence[dict[int, int]], sign: int, is_along: bool) -> "Way | None":
+    def _way(self, road: Road, ids: Sequence[dict[int, int]], sign: int, is_along: bool) -> "OneWay | None":
         profile = road.profile
         assert profile is not None
         through = set.intersection(*(set(each.values()) for each in ids))
-        offset, kept, lanes = profile.offset, dict[int, int](), list[Lane]()
+        offset, kept, lanes = profile.offset, dict[int, int](), list[LaneStrip]()
         inside: list[tuple[float, Width]] = []
         for n, lane in enumerate(profile.left if sign > 0 else profile.right, 1):
             if lane.kind != "driving" or sign * n not in through:
@@ -706,7 +706,7 @@ class RoadBuilder:
             if not lanes:
                 offset = _sum([(1.0, offset), (float(sign), gap)], road.length)
             elif gap != 0:
-                lanes.append(Lane("none", gap))
+                lanes.append(LaneStrip("none", gap))
             lanes.append(lane)
             kept[sign * n], inside = sign * len(lanes), []
         if not kept:
@@ -720,11 +720,11 @@ class RoadBuilder:
             for lanes_at, there in ((self.file.entry, ids[0]), (self.file.exit, ids[-1]))
         )
         if is_along:
-            return Way(road, True, at_start, at_end)
-        return Way(turned(road), False, *({a: -b for a, b in each.items()} for each in (at_start, at_end)))
+            return OneWay(road, True, at_start, at_end)
+        return OneWay(turned(road), False, *({a: -b for a, b in each.items()} for each in (at_start, at_end)))
 
 
-class Way(NamedTuple):
+class OneWay(NamedTuple):
     """A road for one direction of a connecting road, from where its traffic enters the junction."""
 
     road: Road

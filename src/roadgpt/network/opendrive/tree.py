@@ -65,7 +65,7 @@ MERGED = 0.1  # m; the length of a road may differ by this much from that of its
 TOLD = 3  # places that a remark lists
 
 
-class Remarks:
+class MapRemarks:
     """Sentences about what was changed or left out, each with the places at which that happened. Those about
     a file ``of_one_road`` do not name the road."""
 
@@ -251,7 +251,7 @@ def _is_temporary(attributes: Mapping[str, str]) -> bool:
     return "temporary" in layers or attributes.get("temporary") == "true"
 
 
-def in_order(road: Element, remarks: Remarks, where: str) -> None:
+def in_order(road: Element, remarks: MapRemarks, where: str) -> None:
     """Sorts the records of a road in place, and removes those that begin beyond its end. Adds a remark for
     each kind of record that was not in order, had several at one station, begins late, or begins beyond the
     end, and for a wrong length. Raises UsageError if a station is not a number."""

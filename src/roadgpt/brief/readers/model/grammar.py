@@ -47,7 +47,7 @@ from roadgpt.brief.readers.model.vocabulary import (
     written,
 )
 from roadgpt.brief.refusal import CLASHING, OF_CAUSES
-from roadgpt.brief.scene import LAND_KINDS, ON_ITS_WAY, ONE_OF, Land, Lie, Patch, Role
+from roadgpt.brief.scene import LAND_KINDS, ON_ITS_WAY, ONE_OF, Land, Lie, Role, SlipperyPlace
 from roadgpt.language.names import (
     Compass,
     Control,
@@ -696,7 +696,7 @@ def _scene_change(numbers: Numbers) -> Symbol:
     things: dict[tuple[str, ...], tuple[Sequence[Symbol], Symbol]] = {
         (*ACTORS, "actor"): ((*WHICH, one_of(*WHERES), ONE_SIDE), actor),
         (*LANDS, "landscape"): ((*WHICH, one_of(*SIDES)), any_of(*_of_thing(Land, numbers))),
-        ("slippery",): (WHICH, any_of(*_of_thing(Patch, numbers))),
+        ("slippery",): (WHICH, any_of(*_of_thing(SlipperyPlace, numbers))),
         (TESTED_CAR,): ((), any_of(sequel(one_of("v="), _value("v=", numbers)), one_of("remove"))),
         ("traffic", "oncoming"): ((), any_of(one_of("remove"), levels, *MORE_OR_LESS)),
         ("land",): ((), any_of(*MORE_OR_LESS)),

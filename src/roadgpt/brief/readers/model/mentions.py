@@ -13,7 +13,7 @@ from roadgpt.brief.plan import SCENE
 from roadgpt.brief.readers.model.number_words import plain
 from roadgpt.brief.scene import Scene, usual_weather
 from roadgpt.language.names import ActorKind, WeatherKind
-from roadgpt.language.table import ROAD_USERS, WEATHER, RoadUser, Weather, Words
+from roadgpt.language.table import ROAD_USERS, WEATHER, RoadUser, WeatherRow, Words
 
 DENIED, ARTICLES = word_set("denying"), word_set("ones") | word_set("of_known")
 AGAIN = word_set("of_known")
@@ -47,7 +47,7 @@ class Mention(NamedTuple):
     """Whether it is named as what is not there."""
 
 
-def _row_of(name: str) -> RoadUser | Weather:
+def _row_of(name: str) -> RoadUser | WeatherRow:
     return ROAD_USERS[cast("ActorKind", name)] if name in ROAD_USERS else WEATHER[cast("WeatherKind", name)]
 
 

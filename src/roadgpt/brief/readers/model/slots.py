@@ -70,7 +70,7 @@ MOST_BETWEEN = 4
 
 
 @dataclass(slots=True)
-class Number:
+class NumberInText:
     """A number, its position in the text, and its unit."""
 
     value: float
@@ -104,7 +104,7 @@ def unit_at(tokens: Sequence[str], at: int) -> tuple[Unit, float, int] | None:
     return None
 
 
-def take_unit(number: Number, tokens: list[str]) -> None:
+def take_unit(number: NumberInText, tokens: list[str]) -> None:
     """Assigns to a number the unit that follows it, and converts its value to metres, percent or degrees."""
     if number.unit:
         return
@@ -125,7 +125,7 @@ def take_unit(number: Number, tokens: list[str]) -> None:
     number.value = round(number.value, 2)
 
 
-def share_units(numbers: list[Number], tokens: list[str]) -> None:
+def share_units(numbers: list[NumberInText], tokens: list[str]) -> None:
     """Assigns to "40" in "40 to 60 metres" the unit of "60"; works backwards, so that it also handles longer
     lists."""
     is_shared = False
@@ -149,7 +149,7 @@ def share_units(numbers: list[Number], tokens: list[str]) -> None:
         one.is_bare, one.factor, is_shared = False, other.factor, True
 
 
-def take_unit_of_all(numbers: list[Number], tokens: list[str]) -> None:
+def take_unit_of_all(numbers: list[NumberInText], tokens: list[str]) -> None:
     """Treats numbers without a unit, except counts, as feet or yards if the description says so, as in
     "lengths in feet: 250 straight"."""
     factors = {UNITS.get((unit,), ("", 0.0)) for word, unit in pairwise(tokens) if word in ("in", "en")}
@@ -163,7 +163,7 @@ def take_unit_of_all(numbers: list[Number], tokens: list[str]) -> None:
             number.is_bare, number.factor = False, sizes[0]
 
 
-def take_miles_per_hour(numbers: list[Number], tokens: list[str], said: Sequence[str]) -> None:
+def take_miles_per_hour(numbers: list[NumberInText], tokens: list[str], said: Sequence[str]) -> None:
     """Treats numbers without a unit that are told as speeds, as in "70 in a 55 zone", as miles per hour,
     if the description counts in miles, feet or yards or has words of those who do, and has no metric unit."""
     speeds = {number.factor for number in numbers if number.unit == "kmh"}
@@ -186,7 +186,7 @@ def take_miles_per_hour(numbers: list[Number], tokens: list[str], said: Sequence
             number.is_bare, number.factor = False, MILES_PER_HOUR
 
 
-def _is_told_as_speed(number: Number, tokens: Sequence[str], said: Sequence[str]) -> bool:
+def _is_told_as_speed(number: NumberInText, tokens: Sequence[str], said: Sequence[str]) -> bool:
     after = [*tokens[number.last + 1 : number.last + 3], "", ""]
     if after[0] in OF_SPEED or (after[0] == "as" and after[1] in ("posted", "allowed")):
         return True
@@ -199,14 +199,14 @@ def _is_told_as_speed(number: Number, tokens: Sequence[str], said: Sequence[str]
     return before[-1] in SPEEDING or is_slowing or is_in_a
 
 
-def is_count(tokens: Sequence[str], number: Number) -> bool:
+def is_count(tokens: Sequence[str], number: NumberInText) -> bool:
     """Returns True if the number may be a count: whole, not too large, and not a radius."""
     return (
         number.value <= LARGEST_SEEN and number.value == int(number.value) and not is_radius(tokens, number)
     )
 
 
-def is_radius(tokens: Sequence[str], number: Number) -> bool:
+def is_radius(tokens: Sequence[str], number: NumberInText) -> bool:
     """Returns True if the number is 10 or more and follows "R" or a word for a radius, as in "R15"."""
     at = number.first - 1
     while at >= 0 and tokens[at] in LEADING_TO:
@@ -214,7 +214,7 @@ def is_radius(tokens: Sequence[str], number: Number) -> bool:
     return number.value >= 10 and at >= 0 and (tokens[at] == "r" or tokens[at] in RADIUS)
 
 
-def as_grade(number: Number, tokens: Sequence[str]) -> None:
+def as_grade(number: NumberInText, tokens: Sequence[str]) -> None:
     """Converts degrees to percent if the words next to the number show that it is a slope.
 
     Only a number close to a word for a slope is a slope; "climbs 30 degrees to the left" remains a turn."""
@@ -222,7 +222,7 @@ def as_grade(number: Number, tokens: Sequence[str]) -> None:
         number.value, number.unit = round(100 * tan(radians(number.value)), 1), "percent"
 
 
-def _is_tilt(number: Number, tokens: Sequence[str]) -> bool:
+def _is_tilt(number: NumberInText, tokens: Sequence[str]) -> bool:
     after = [token for token in tokens[number.last + 1 : number.last + 5] if token not in SKIPPED]
     if after and after[0] in SLOPES:
         return not TURNING.intersection(after[1:2])
@@ -249,7 +249,7 @@ MOST_WORDS = 3
 """The largest number of words that decimals have; a hyphen counts as a word."""
 
 
-def unit_fraction(tokens: list[str], at: int) -> Number | None:
+def unit_fraction(tokens: list[str], at: int) -> NumberInText | None:
     """Reads "3/4 mile", "1 1/2 miles" and "0.3 of a mile"."""
     if SHARE.fullmatch(tokens[at]) and tokens[at + 1 : at + 2] == ["of"]:
         return _of_unit(float(tokens[at].replace(",", ".")), tokens, at, at)
@@ -270,7 +270,7 @@ def _share(tokens: list[str], at: int) -> float | None:
     return int(above) / int(below) if is_fraction else None
 
 
-def _of_unit(value: float, tokens: list[str], at: int, last: int) -> Number | None:
+def _of_unit(value: float, tokens: list[str], at: int, last: int) -> NumberInText | None:
     """Returns a number from token ``at`` to ``last`` and the words before its unit, a length.
 
     None if no unit follows, or if it is a fraction of a unit as small as a metre: "turns 3/4 m wide"."""
@@ -278,10 +278,12 @@ def _of_unit(value: float, tokens: list[str], at: int, last: int) -> Number | No
         last += 1
     unit = unit_at(tokens, last + 1)
     is_small = unit is not None and unit[1] < FAR and (value < 1 or last - at < 3)
-    return None if unit is None or unit[0] != "metres" or is_small else Number(value, at, last, "", False)
+    return (
+        None if unit is None or unit[0] != "metres" or is_small else NumberInText(value, at, last, "", False)
+    )
 
 
-def whole_and_share(tokens: list[str], at: int) -> Number | None:
+def whole_and_share(tokens: list[str], at: int) -> NumberInText | None:
     """Reads "two and a half kilometres", "three and a quarter miles", "zweieinhalb Kilometer" and "one and a
     half thousand metres"."""
     value = _german_half(tokens[at])
@@ -295,7 +297,7 @@ def whole_and_share(tokens: list[str], at: int) -> Number | None:
     return _before_unit(whole + share, tokens, at, last) if share else None
 
 
-def take_share(number: Number, tokens: list[str]) -> None:
+def take_share(number: NumberInText, tokens: list[str]) -> None:
     """Adds to "two kilometres" the half of a kilometre in "two kilometres and a half"."""
     joint = tokens[number.last + 1 : number.last + 2]
     if number.unit != "metres" or number.factor < FAR or not joint or joint[0] not in WHOLE_AND - {"-"}:
@@ -331,16 +333,16 @@ def _german_half(word: str) -> float | None:
     return value * (1000 if thousand else 1) or None
 
 
-def _before_unit(value: float, tokens: list[str], at: int, last: int) -> Number | None:
+def _before_unit(value: float, tokens: list[str], at: int, last: int) -> NumberInText | None:
     """Returns a number from token ``at`` to ``last``, or to "thousand" behind it; None if no unit follows."""
     size = SIZES.get(tokens[last + 1], 1) if tokens[last + 1 : last + 2] else 1
     last += size > 1
     while tokens[last + 1 : last + 2] and tokens[last + 1] in SHARE_FILLERS - {"-"}:
         last += 1
-    return Number(value * size, at, last, "", False) if unit_at(tokens, last + 1) else None
+    return NumberInText(value * size, at, last, "", False) if unit_at(tokens, last + 1) else None
 
 
-def with_decimals(number: Number, tokens: Sequence[str]) -> Number:
+def with_decimals(number: NumberInText, tokens: Sequence[str]) -> NumberInText:
     """Returns a number with the decimals that follow in words; unchanged without decimals and a unit."""
     if not number.is_bare or number.unit or number.value != int(number.value):
         return number
@@ -360,10 +362,10 @@ def with_decimals(number: Number, tokens: Sequence[str]) -> Number:
     return replace(number, value=float(f"{number.value:.0f}.{decimals}"), last=last)
 
 
-def one_with_decimals(tokens: Sequence[str], at: int) -> Number | None:
+def one_with_decimals(tokens: Sequence[str], at: int) -> NumberInText | None:
     """Reads "one point five" and "due virgola cinque": "one" and "due" are numbers only with decimals."""
     value = 1 if tokens[at] in ONES else number_word(tokens[at])
-    found = with_decimals(Number(float(value), at, at), tokens) if value else None
+    found = with_decimals(NumberInText(float(value), at, at), tokens) if value else None
     return found if found is not None and found.last > at else None
 
 
@@ -399,9 +401,9 @@ def _is_count(tokens: Sequence[str], at: int) -> bool:
     )
 
 
-def with_tolerances(numbers: Sequence[Number], tokens: Sequence[str]) -> list[Number]:
+def with_tolerances(numbers: Sequence[NumberInText], tokens: Sequence[str]) -> list[NumberInText]:
     """Removes the numbers that are tolerances; the number that has the tolerance keeps it as ``spread``."""
-    out: list[Number] = []
+    out: list[NumberInText] = []
     for number in numbers:
         if out and _is_tolerance(tokens[out[-1].last + 1 : number.first]) and number.value < out[-1].value:
             _take(out[-1], number, tokens)
@@ -412,7 +414,7 @@ def with_tolerances(numbers: Sequence[Number], tokens: Sequence[str]) -> list[Nu
     return out
 
 
-def _take_one(number: Number, tokens: Sequence[str]) -> None:
+def _take_one(number: NumberInText, tokens: Sequence[str]) -> None:
     """Sets the tolerance of a count to 1 if the text gives the tolerance as a word such as "one" or "eine".
 
     Such words are not read as numbers elsewhere, since they are mostly articles."""
@@ -431,7 +433,7 @@ def _is_tolerance(between: Sequence[str]) -> bool:
     return tuple(words) in PLUS_MINUS
 
 
-def _take(number: Number, tolerance: Number, tokens: Sequence[str]) -> None:
+def _take(number: NumberInText, tolerance: NumberInText, tokens: Sequence[str]) -> None:
     both_counts = number.is_bare and tolerance.is_bare and is_count(tokens, number)
     if number.is_bare and tolerance.unit in ("metres", "degrees"):
         number.value = round(number.value * tolerance.factor, 1)
@@ -445,7 +447,7 @@ def _take(number: Number, tolerance: Number, tokens: Sequence[str]) -> None:
     number.last = tolerance.last + (is_open and closes)
 
 
-def _in_unit_of(number: Number, tolerance: Number) -> float:
+def _in_unit_of(number: NumberInText, tolerance: NumberInText) -> float:
     """Returns the tolerance of a measure in the unit of its value; a percentage of a length is one of it."""
     if tolerance.unit == number.unit:
         return tolerance.value
@@ -540,9 +542,9 @@ def slot_name(index: int) -> str:
     return f"[unused{index + 1}]"
 
 
-def _numbers(tokens: list[str]) -> list[Number]:
+def _numbers(tokens: list[str]) -> list[NumberInText]:
     language = language_of(tokens)
-    numbers: list[Number] = []
+    numbers: list[NumberInText] = []
     at = 0
     while at < len(tokens):
         number = (
@@ -569,7 +571,7 @@ def _with_miles(tokens: list[str]) -> list[str]:
     ]
 
 
-def _ratio(tokens: list[str], at: int, language: str) -> Number | None:
+def _ratio(tokens: list[str], at: int, language: str) -> NumberInText | None:
     """Reads "one in ten" and "1:8" as percent."""
     places = [place for place in range(at, min(at + 5, len(tokens))) if tokens[place] != "-"][:3]
     here = [tokens[place] for place in places]
@@ -579,16 +581,16 @@ def _ratio(tokens: list[str], at: int, language: str) -> Number | None:
     below, last = (spelled.value, spelled.last) if spelled else (_digit_value(here[2]) or 0.0, places[2])
     if not 3 <= below <= 100 or unit_at(tokens, last + 1):
         return None
-    return Number(round(100 / below, 1), at, last, "percent", False)
+    return NumberInText(round(100 / below, 1), at, last, "percent", False)
 
 
-def _millions(tokens: list[str], at: int) -> Number | None:
+def _millions(tokens: list[str], at: int) -> NumberInText | None:
     """Reads "a million", "two billion" and the like as one million, which is too many for any road."""
     if tokens[at] in MILLIONS:
-        return Number(MILLION, at, at)
+        return NumberInText(MILLION, at, at)
     is_number = tokens[at] in ONES or tokens[at].isdecimal() or number_word(tokens[at]) > 0
     is_many = is_number and not MILLIONS.isdisjoint(tokens[at + 1 : at + 2])
-    return Number(MILLION, at, at + 1) if is_many else None
+    return NumberInText(MILLION, at, at + 1) if is_many else None
 
 
 def _digit_value(token: str) -> float | None:
@@ -598,7 +600,7 @@ def _digit_value(token: str) -> float | None:
     return float(".".join(parts[:2]))
 
 
-def _digits(tokens: list[str], at: int) -> Number | None:
+def _digits(tokens: list[str], at: int) -> NumberInText | None:
     value = _digit_value(tokens[at])
     if value is None:
         return _point(tokens, at)
@@ -608,35 +610,35 @@ def _digits(tokens: list[str], at: int) -> Number | None:
     size = SIZES.get(after[0], 0) if after and after[1:] != ["marin"] else 0
     is_clear = bool(after) and (after[0] in ("hundred", "thousand") or unit_at(tokens, at + 2) is not None)
     if is_clear and value * size <= MILLION and value < size:
-        return Number(round(value * size, 1), at, at + 1)
-    return Number(value, at, at)
+        return NumberInText(round(value * size, 1), at, at + 1)
+    return NumberInText(value, at, at)
 
 
-def _point(tokens: list[str], at: int) -> Number | None:
+def _point(tokens: list[str], at: int) -> NumberInText | None:
     """Reads "point two" as 0.2."""
     if tokens[at] != "point" or at + 1 >= len(tokens):
         return None
     tenths = number_word(tokens[at + 1])
-    return Number(tenths / 10, at, at + 1) if 0 < tenths < 10 else None
+    return NumberInText(tenths / 10, at, at + 1) if 0 < tenths < 10 else None
 
 
-def _set(tokens: list[str], at: int) -> Number | None:
+def _set(tokens: list[str], at: int) -> NumberInText | None:
     """Reads "half a dozen", "a few hundred metres" and the like, with or without hyphens."""
-    best: Number | None = None
+    best: NumberInText | None = None
     key: list[str] = []
     for place in range(at, min(at + 6, len(tokens))):
         if tokens[place] == "-" and key:
             continue
         key.append(tokens[place])
         if tuple(key) in SETS:
-            best = Number(SETS[tuple(key)], at, place)
+            best = NumberInText(SETS[tuple(key)], at, place)
         if tuple(key) in VAGUE_SETS and unit_at(tokens, place + 1):
             least, most = VAGUE_SETS[tuple(key)]
-            best = Number((least + most) / 2, at, place, spread=(most - least) / 2)
+            best = NumberInText((least + most) / 2, at, place, spread=(most - least) / 2)
     return best
 
 
-def _part(tokens: list[str], at: int) -> Number | None:
+def _part(tokens: list[str], at: int) -> NumberInText | None:
     """Reads "half a mile", "three quarters of a kilometre", "one and a half miles", if a unit follows."""
     many = _digit_value(tokens[at]) or number_word(tokens[at])
     many = 1.0 if tokens[at] in ONES else many
@@ -651,19 +653,19 @@ def _part(tokens: list[str], at: int) -> Number | None:
     place = at + (tokens[at] in ONES)
     unit = None if share else unit_at(tokens, place)
     if unit and unit[1] >= FAR and tokens[place + 1 : place + 4] == ["and", "a", "half"]:
-        return Number(round(1.5 * unit[1], 1), at, place + 3, "metres", False)
+        return NumberInText(round(1.5 * unit[1], 1), at, place + 3, "metres", False)
     if not found or (not share and many != 1):
         return None
     if not share and (found[0] != "metres" or (found[1] < 100 and tokens[at] in ("a", "an", "un", "una"))):
         return None
-    return Number(many * share if share and many else share or 1.0, at, last, "", False)
+    return NumberInText(many * share if share and many else share or 1.0, at, last, "", False)
 
 
-def _spelled(tokens: list[str], at: int, language: str) -> Number | None:
+def _spelled(tokens: list[str], at: int, language: str) -> NumberInText | None:
     """Reads the longest number word at this place, with or without hyphens."""
     if not begins_number(tokens[at]):
         return None
-    best: Number | None = None
+    best: NumberInText | None = None
     key: list[str] = []
     place = at
     while place < len(tokens) and len(key) < LONGEST:
@@ -677,14 +679,16 @@ def _spelled(tokens: list[str], at: int, language: str) -> Number | None:
         is_doubtful = key[0] in AMBIGUOUS and len(key) == 1 and unit_at(tokens, place + 1) is None
         is_part = len(key) > 1 and next((each for each in tokens[place + 1 :] if each != "-"), "") in SIZES
         if found and (language in found or not is_doubtful) and not is_part:
-            best = Number(found.get(language, next(iter(found.values()))), at, place)
+            best = NumberInText(found.get(language, next(iter(found.values()))), at, place)
         place += 1
     if best and best.value == 0 and tokens[at] == "null" and language != "de":
         return None
     return best
 
 
-def _replaced(tokens: list[str], said: list[str], numbers: list[Number], is_change: bool) -> SlottedText:
+def _replaced(
+    tokens: list[str], said: list[str], numbers: list[NumberInText], is_change: bool
+) -> SlottedText:
     out: list[Word] = []
     slots: list[NumberSlot] = []
     starts = {number.first: number for number in numbers}
@@ -715,7 +719,7 @@ def _replaced(tokens: list[str], said: list[str], numbers: list[Number], is_chan
     return SlottedText(tuple(out), tuple(slots))
 
 
-def _measure(number: Number, spoken: str, slots: list[NumberSlot], is_change: bool) -> list[Word]:
+def _measure(number: NumberInText, spoken: str, slots: list[NumberSlot], is_change: bool) -> list[Word]:
     """Returns the words for a measure and adds its slot to ``slots``; one with a tolerance becomes a range.
 
     In a change request the tolerance is left out, because a change has one target."""
@@ -734,7 +738,7 @@ def _measure(number: Number, spoken: str, slots: list[NumberSlot], is_change: bo
     return out
 
 
-def _count(number: Number, spoken: str) -> list[Word]:
+def _count(number: NumberInText, spoken: str) -> list[Word]:
     """Returns a small number without a unit as digits; with a tolerance, as a range such as "3 to 5"."""
     value, spread = int(number.value), int(number.spread)
     if not spread:

@@ -250,7 +250,7 @@ class MujocoHandles(NamedTuple):
     com: FloatArray
 
 
-class Land(NamedTuple):
+class LandGrid(NamedTuple):
     """Heights of the land beside the road on a grid in metres; without any rows, there is nothing."""
 
     heights: FloatArray  # (rows, columns), roads included
@@ -265,10 +265,10 @@ class Land(NamedTuple):
 
 BRIDGE, TUNNEL = 1.0, 2.0
 ROOF, UNDERSIDE = 5.0, 1.5  # m above the road of a tunnel, and below that of a bridge, where land may be
-NO_LAND = Land(np.empty((0, 0)), np.empty((0, 0)), 0.0, 0.0, 1.0, 0.0, np.empty((0, 3)))
+NO_LAND = LandGrid(np.empty((0, 0)), np.empty((0, 0)), 0.0, 0.0, 1.0, 0.0, np.empty((0, 3)))
 
 
-class Ground(NamedTuple):
+class DrivenGround(NamedTuple):
     """The surface under the wheels: a road or a plane, and the land around it."""
 
     sampled: SampledRoad
@@ -278,7 +278,7 @@ class Ground(NamedTuple):
     beyond: float  # length in m by which the ground continues before the start and after the end of the road
     friction: float
     lane: LanePolygon
-    land: Land = NO_LAND
+    land: LandGrid = NO_LAND
 
 
 class CarState(NamedTuple):
@@ -296,7 +296,7 @@ def step_once(
     mj: MujocoHandles,
     car: Any,
     axles: Any,
-    ground: Ground,
+    ground: DrivenGround,
     car_state: CarState,
     steer: float,
     throttle: float,
@@ -368,7 +368,7 @@ def _hinge_angle(car: Any, axle: Any, steer: float, side: int) -> float:
 
 
 @inlined
-def beyond_rim(ground: Ground, s: float, t: float) -> float:
+def beyond_rim(ground: DrivenGround, s: float, t: float) -> float:
     """Returns how far a point of the road's surface lies beyond its rim or its ends, in m; negative on it."""
     sampled = ground.sampled
     over = room_at(ground.rims, sampled.first, sampled.step, s, t)
@@ -376,7 +376,7 @@ def beyond_rim(ground: Ground, s: float, t: float) -> float:
 
 
 @inlined
-def crossing_at(land: Land, s: float) -> float:
+def crossing_at(land: LandGrid, s: float) -> float:
     """Returns BRIDGE or TUNNEL at a station, 0 elsewhere."""
     for n in range(land.crossings.shape[0]):
         if land.crossings[n, 0] <= s <= land.crossings[n, 1]:
@@ -385,7 +385,7 @@ def crossing_at(land: Land, s: float) -> float:
 
 
 @inlined
-def is_over_land(land: Land, s: float, z: float, road: float, beyond: float) -> bool:
+def is_over_land(land: LandGrid, s: float, z: float, road: float, beyond: float) -> bool:
     """Returns whether land, and not the road, is under a point at a height: beside the road, on the hill over
     a tunnel, and under a bridge. ``road`` is the height of the road's surface, continued to the point."""
     if land.heights.shape[0] == 0:
@@ -398,7 +398,7 @@ def is_over_land(land: Land, s: float, z: float, road: float, beyond: float) -> 
 
 @inlined
 def land_contact(
-    land: Land, x: float, y: float, s: float, road: float, slope: float, lateral: float, heading: float,
+    land: LandGrid, x: float, y: float, s: float, road: float, slope: float, lateral: float, heading: float,
     beyond: float,
 ) -> tuple[float, Vector]:  # fmt: skip
     """Returns the height of the land at a point and its normal.
@@ -426,7 +426,7 @@ def land_contact(
 
 @inlined
 def _ground_contact(
-    car: Any, ground: Ground, wheel: FloatArray, centre: FloatArray
+    car: Any, ground: DrivenGround, wheel: FloatArray, centre: FloatArray
 ) -> tuple[Vector, float, float, float]:
     """Returns the normal of the ground under a wheel's centre, the distance of the centre from it in m, the
     share of the tyre's width, 0 to 1, that has ground under it, and how deep below its surface the ground
@@ -510,7 +510,7 @@ def _wheel(
     mj: MujocoHandles,
     car: Any,
     axle: Any,
-    ground: Ground,
+    ground: DrivenGround,
     state: FloatArray,
     wheel: FloatArray,
     turn: float,
@@ -551,7 +551,7 @@ def _wheel(
 
 
 @inlined
-def _lies_low(mj: MujocoHandles, car: Any, ground: Ground, state: FloatArray) -> bool:
+def _lies_low(mj: MujocoHandles, car: Any, ground: DrivenGround, state: FloatArray) -> bool:
     sampled = ground.sampled
     x, y, z = mj.xpos[BODY, 0], mj.xpos[BODY, 1], mj.xpos[BODY, 2]
     s, t, height, _, lateral, _ = locate_on(sampled.table, sampled.first, sampled.step, x, y, state[STATION])

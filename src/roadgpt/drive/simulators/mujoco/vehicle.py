@@ -28,8 +28,8 @@ from roadgpt.drive.simulators.mujoco.dynamics import (
     TUNNEL,
     WHEEL_STATE,
     CarState,
-    Ground,
-    Land,
+    DrivenGround,
+    LandGrid,
     MujocoHandles,
     beyond_rim,
     call,
@@ -73,7 +73,7 @@ S, T = _ROW["s"], _ROW["t"]
 class Vehicle:
     """One car on a road or a plane; its state changes as it moves."""
 
-    def __init__(self, car: Car, ground: Ground) -> None:
+    def __init__(self, car: Car, ground: DrivenGround) -> None:
         """Prepares a car on this ground; call `put` to place it."""
         self.car = car
         self._model = model_of(car)
@@ -113,7 +113,7 @@ class Vehicle:
         beyond = profile.reach
         if road.passages:  # shoulders reach around the corners of junctions
             beyond = float(profile.shoulder(road.length))
-        ground = Ground(sampled, rims, beyond, world.site.friction, lane)
+        ground = DrivenGround(sampled, rims, beyond, world.site.friction, lane)
         return cls(car, ground._replace(land=_land(road, world)) if world.has_ground else ground)
 
     def put(self, s: float, t: float, speed: float = 0.0) -> None:
@@ -189,7 +189,7 @@ class Vehicle:
         return np.column_stack([along, left, up])
 
 
-def _land(road: "Road", world: "World") -> Land:
+def _land(road: "Road", world: "World") -> LandGrid:
     from roadgpt.network.landscape import crossings, ground_around  # only drives over land load it
 
     ground = ground_around(road, world)
@@ -200,7 +200,7 @@ def _land(road: "Road", world: "World") -> Land:
         (each.start, each.end, TUNNEL if each.kind == "tunnel" else BRIDGE) for each in crossings(road, world)
     ]
     places = np.array(walls, float).reshape(-1, 3)
-    return Land(ground.heights, water, of.x, of.y, of.cell, of.slope, places)
+    return LandGrid(ground.heights, water, of.x, of.y, of.cell, of.slope, places)
 
 
 def plane(friction: float = 1.0, grade: float = 0.0, size: float = 5000.0, car: Car = ETK_LIKE) -> Vehicle:
@@ -212,7 +212,7 @@ def plane(friction: float = 1.0, grade: float = 0.0, size: float = 5000.0, car: 
     edges = np.column_stack([s - size / 2, np.full(3, size), s - size / 2, np.full(3, -size)])
     rims = np.array([[size, -size]] * 3)
     sampled, lane = SampledRoad(table, 0.0, size / 2, size), LanePolygon(edges, size / 2)
-    vehicle = Vehicle(car, Ground(sampled, rims, size, friction, lane))
+    vehicle = Vehicle(car, DrivenGround(sampled, rims, size, friction, lane))
     vehicle.put(size / 2, 0.0)
     return vehicle
 
@@ -227,7 +227,7 @@ def _handles(model: Any, data: Any) -> MujocoHandles:
 
 
 @inlined
-def _look(mj: MujocoHandles, car: Any, ground: Ground, car_state: CarState, row: FloatArray) -> int:
+def _look(mj: MujocoHandles, car: Any, ground: DrivenGround, car_state: CarState, row: FloatArray) -> int:
     """Fills the row; returns the number in MISHAPS of what has happened to the car."""
     sampled, state, box = ground.sampled, car_state.state, car_state.box
     # The last half step changed the coordinates; update the body's axes.
@@ -287,7 +287,7 @@ def control_step(
     mj: MujocoHandles,
     cars: Any,
     axles: Any,
-    ground: Ground,
+    ground: DrivenGround,
     car_state: CarState,
     steer: float,
     throttle: float,

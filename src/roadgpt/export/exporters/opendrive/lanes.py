@@ -13,7 +13,7 @@ from roadgpt.export.exporters.opendrive.reference_line import elevations, level_
 from roadgpt.export.markup import Value, XmlElement
 from roadgpt.geometry import CubicProfile
 from roadgpt.road import Road, World
-from roadgpt.road.profile import DASH, DOUBLE, GAP, LINE, Lane, Marking, Profile, as_cubics
+from roadgpt.road.profile import DASH, DOUBLE, GAP, LINE, LaneStrip, Marking, Profile, as_cubics
 
 NO_SHOULDER = 1e-3  # m; narrower shoulders are left out
 
@@ -77,7 +77,7 @@ class RoadParts:
         return XmlElement("lanes", is_shared=True).extended(*offset, section)
 
     def _side(
-        self, side: Sequence[Lane], sign: int, length: float, links: LaneLinks, is_inside: bool
+        self, side: Sequence[LaneStrip], sign: int, length: float, links: LaneLinks, is_inside: bool
     ) -> Iterator[XmlElement]:
         kept = [lane for lane in side if isinstance(lane.width, CubicProfile) or lane.width >= NO_SHOULDER]
         for index, lane in enumerate(kept, 1):
