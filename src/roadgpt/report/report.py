@@ -1,9 +1,10 @@
 """Writes the report of a campaign, a folder of runs or a single run."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from roadgpt.campaign.folder_record import is_store, open_record
+from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import Status, no_failure, status_of
 from roadgpt.errors import UsageError
@@ -23,7 +24,7 @@ from roadgpt.report.chapters.validity import (
     source_of,
     validity,
 )
-from roadgpt.report.chapters.wording import driver_names, near_and_far, percent, share_of
+from roadgpt.report.chapters.wording import driver_names, percent, share_of
 from roadgpt.report.page import write
 from roadgpt.report.page.model import Page, Section, Table
 from roadgpt.report.road_record import MOST_COMPARED, RoadGroup, group_of
@@ -32,7 +33,7 @@ from roadgpt.road.world import oracle_in_words
 from roadgpt.run import Request
 from roadgpt.run.versions import Versions
 
-MOST_READ = 1000  # tests of all cells whose roads are measured
+MOST_READ = 500  # tests of all cells whose roads are measured
 MOST_GROUPS = 12  # cells whose roads are measured
 SEEDS = 20  # that are named
 UNITS = {
@@ -125,7 +126,7 @@ def groups_of(record: Record, status: Status, is_paired: bool = False) -> list[R
         group_of(
             record, each, f"{each.name}: {abouts[each.name]}" if several else abouts[each.name],
             most=MOST_READ // len(cells), id=each.name, name=each.name if several else "",
-            most_compared=round(MOST_COMPARED / len(cells) ** 0.5),
+            compared=round(MOST_COMPARED / len(cells) ** 0.5),
         )
         for each in cells
     ]  # fmt: skip
@@ -153,8 +154,10 @@ def summary_of(record: Record, status: Status, groups: Sequence[RoadGroup] = ())
             most = max(shares, key=lambda name: shares[name])
             out.append(f"Most fail in {most}: {percent(shares[most])} of its driven roads.")
         out += outside_sentences(passed_tests([record]), first.world)
-        farthest = _least(record, "FAIL") if first.setup.keep_driving else None
-        out += near_and_far(_least(record, "PASS"), farthest)
+        for test, by in _least(record, "PASS"):
+            out.append(f"Of the drives that kept their lane, {test} came nearest to failing: {by}.")
+        for test, by in _least(record, "FAIL") if first.setup.keep_driving else ():
+            out.append(f"Farthest out went {test}: {by} beyond what is allowed.")
     for name in dict.fromkeys(group.designer for group in groups):
         own = [group for group in groups if group.designer == name]
         out += [*valid_sentence(name, own), *kept_and_alike(own)]
@@ -168,13 +171,15 @@ def summary_of(record: Record, status: Status, groups: Sequence[RoadGroup] = ())
     return out
 
 
-def _least(record: Record, outcome: str) -> tuple[float, str] | None:
+def _least(record: Record, outcome: str) -> Iterator[tuple[str, str]]:
+    """Yields the test with this outcome that has the smallest margin, if any, and how far that is from 0."""
     found = record.query(
-        "SELECT margin, cell, number FROM tests WHERE outcome = ? AND margin IS NOT NULL "
-        "ORDER BY margin, cell, number LIMIT 1",
+        "SELECT cell, number, abs(margin) FROM tests WHERE outcome = ? AND margin IS NOT NULL "
+        "AND (outcome != 'FAIL' OR margin < 0) ORDER BY margin, cell, number LIMIT 1",
         (outcome,),
     )
-    return (found[0][0], "test " + f"{found[0][1]}/{found[0][2]}".lstrip("/")) if found else None
+    for *name, metres in found:
+        yield f"test {NumberedTest(*name)}", f"{metres:.2f} m" if metres >= 0.01 else "less than 1 cm"
 
 
 def valid_sentence(designer: str, parts: Sequence[RoadGroup], beside: str = "") -> list[str]:

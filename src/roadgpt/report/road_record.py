@@ -2,6 +2,7 @@
 They are computed from the roads of a Record."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -93,7 +94,6 @@ class RoadGroup:
     problem: str = ""  # the reason why roads are missing; empty if none is missing
     wanted: int = 1  # number of roads that the user requested
     versions: Versions = field(default_factory=dict)
-    most_compared: int = MOST_COMPARED
 
     @property
     def size(self) -> float:
@@ -116,8 +116,8 @@ class RoadGroup:
 
     @cached_property
     def compared(self) -> tuple[RoadRecord, ...]:
-        """The roads that are compared with each other: the first that can be compared."""
-        return tuple(road for road in self.roads if road.likeness is not None)[: self.most_compared]
+        """The roads that are compared with each other: the first ones, as far as they can be compared."""
+        return tuple(road for road in self.roads if road.likeness is not None)
 
     @cached_property
     def likenesses(self) -> list[Likeness]:
@@ -141,14 +141,14 @@ def read_group(place: Path, designer: str, words: str, truth: Truth | None = Non
 
 def group_of(
     record: Record, cell: Cell, words: str, truth: Truth | None = None, home: str = "",
-    most: int = MOST_TESTS, **more: Any,
+    most: int = MOST_TESTS, compared: int = MOST_COMPARED, **more: Any,
 ) -> RoadGroup:  # fmt: skip
-    """Returns the roads of the first ``most`` tests of a cell. ``home`` is the way from the report's folder
-    to that of the record; ``more`` are further fields of the group."""
+    """Returns the roads of the first ``most`` tests of a cell, of which the first are ``compared``. ``home``
+    is the way from the report's folder to that of the record; ``more`` are further fields of the group."""
     names = [*(f"overview.{kind}" for kind in FORMATS), "generation_stats.csv", "results.csv"]
     drawn = next((name for name in names if (record.folder / name).is_file()), "")
     results = record.results(cell.name, "tests.number <= ?", (most,))
-    roads = tuple(_road_of(record, cell, each, truth, home) for each in results)
+    roads = tuple(_road_of(record, cell, each, truth, home, each.number <= compared) for each in results)
     setup = cell.request.setup
     more |= {"overview": under(home, drawn), "versions": record.versions(setup.driver)}
     return RoadGroup(setup.designer, words, roads, truth, **more)
@@ -168,7 +168,9 @@ def file_of(folder: Path, cell: str, number: int) -> str:
     return next((path for path in paths if (folder / path).is_file()), "")
 
 
-def _road_of(record: Record, cell: Cell, result: Result, truth: Truth | None, home: str) -> RoadRecord:
+def _road_of(
+    record: Record, cell: Cell, result: Result, truth: Truth | None, home: str, is_compared: bool
+) -> RoadRecord:
     road, request = record.road(cell, result) or (None, cell.request)
     href = under(home, file_of(record.folder, cell.name, result.number))
     brief = cell.of_test(result.proposal).brief
@@ -181,9 +183,12 @@ def _road_of(record: Record, cell: Cell, result: Result, truth: Truth | None, ho
     if result.at_s is not None and result.cause in DEPARTURES:
         x, y, _ = road.at(result.at_s, request.world.profile_of(road).middle(result.at_s)).tolist()
         at = x, y
+    its = None
+    with suppress(RoadGPTError, FloatingPointError, ValueError):  # a broken road cannot be compared
+        its = likeness(road) if is_compared else None
     return RoadRecord(
         result, request.world, not findings, all(finding.rule == "promises" for finding in findings),
-        sbft[0].sentence if sbft else "", road.centreline(2.0)[:, :2], kept, _likeness(road), href, at,
+        sbft[0].sentence if sbft else "", road.centreline(2.0)[:, :2], kept, its, href, at,
     )  # fmt: skip
 
 
@@ -206,10 +211,3 @@ def _kept(
         return {}
     found = measure(points, read.widest) if read else measure(points)
     return {criterion: good and is_road for criterion, good in criteria_of(found, asked).items()}
-
-
-def _likeness(road: Road) -> Likeness | None:
-    try:
-        return likeness(road)
-    except (RoadGPTError, FloatingPointError, ValueError):  # a broken road cannot be compared
-        return None

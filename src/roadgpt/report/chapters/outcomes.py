@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from roadgpt.campaign.columns import told_of
+from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.record import Record, reading_store
 from roadgpt.campaign.status import CellStatus, Status
 from roadgpt.errors import command_line
@@ -44,10 +45,12 @@ def outcomes(record: Record, status: Status, are_same: bool) -> Section:
     """Returns the section on the outcomes of each cell; ``are_same``: whether their roads are the same."""
     seconds = dict(record.query("SELECT name, seconds FROM cells"))
     names = driver_names(each.driver for each in status.cells)
-    differing, note = _what_differs(status.cells, names)
+    abouts = [_about(each, names) for each in status.cells]
+    differing = [head for head in abouts[0] if len({about[head] for about in abouts}) > 1]
+    same = ", ".join(f"{head} {text}" for head, text in abouts[0].items() if head not in differing)
+    note = f"{'In all cells: ' * (len(abouts) > 1)}{same}." if same else ""
     rows: list[list[TableCell]] = []
-    for each in status.cells:
-        about = _about(each, names)
+    for each, about in zip(status.cells, abouts, strict=True):
         rows.append(
             row(
                 each.name or "all",
@@ -93,25 +96,13 @@ def outcomes(record: Record, status: Status, are_same: bool) -> Section:
 
 def _about(of: CellStatus, names: Mapping[str, str]) -> dict[str, str]:
     return {
-        "description": of.about,
+        "description": f"“{of.about}”",
         "generator": of.generator,
         "driver": names[of.driver],
         "oracle": of.oracle,
         "seed": str(of.seed),
         "friction": "of each road" if of.friction is None else f"{of.friction:g}",
     }
-
-
-def _what_differs(cells: Sequence[CellStatus], names: Mapping[str, str]) -> tuple[list[str], str]:
-    every = [_about(each, names) for each in cells]
-    differing = [head for head in every[0] if len({about[head] for about in every}) > 1]
-    same = [
-        f"{head} “{text}”" if head == "description" else f"{head} {text}"
-        for head, text in every[0].items()
-        if head not in differing
-    ]
-    whose = "In all cells: " if len(cells) > 1 else ""
-    return differing, whose + ", ".join(same) + "." if same else ""
 
 
 def failures(record: Record, status: Status, drives_on: bool) -> list[Section]:
@@ -148,7 +139,7 @@ def _worst(record: Record, done: int, drives_on: bool) -> Table:
     for (name, number, outcome, margin, outside, cause, side, at_s, says, _), own in zip(
         some, numbers, strict=True
     ):
-        test = f"{name}/{number}".lstrip("/")
+        test = str(NumberedTest(name, number))
         has_margin = cause != "collision" and (drives_on or outcome == "PASS")
         rows.append(
             row(

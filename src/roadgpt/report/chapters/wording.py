@@ -86,22 +86,3 @@ def folded(title: str, lines: Sequence[Block]) -> list[Block]:
         return []
     more = [f"… and {len(lines) - MOST_NAMED} more."] if len(lines) > MOST_NAMED else []
     return [Details(f"{title} ({plural(len(lines), 'road')})", [*lines[:MOST_NAMED], *more])]
-
-
-def near_and_far(near: tuple[float, str] | None, far: tuple[float, str] | None) -> list[str]:
-    """Returns a sentence on the passed drive that came closest to failing (``near``), and a sentence on the
-    failed drive in which the car went farthest out of its lane (``far``). Each drive is a margin in metres,
-    negative for a failed drive, and a name. None: no sentence. If drives end where the car leaves its lane,
-    pass None for ``far``."""
-    out = []
-    if near is not None:
-        out.append(
-            f"Of the drives that kept their lane, {near[1]} came nearest to failing: {_metres(near[0])}."
-        )
-    if far is not None and far[0] < 0:
-        out.append(f"Farthest out went {far[1]}: {_metres(-far[0])} beyond what is allowed.")
-    return out
-
-
-def _metres(value: float) -> str:
-    return f"{value:.2f} m" if value >= 0.01 else "less than 1 cm"
