@@ -13,9 +13,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 
 from authorities import sbft_official_slow as slow
 from authorities.sbft_roads import mutated, random_road
-from roadgpt.check import inspect, sbft_verdict
+from roadgpt.check import inspect
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, Road, Segment, Site, World, build
+from roadgpt_sbft.validator import sbft_verdict
 
 BARS = {
     100: 24,

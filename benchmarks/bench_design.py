@@ -25,6 +25,7 @@ from roadgpt.brief import Brief, read
 from roadgpt.check.measures import measure
 from roadgpt.design import draft
 from roadgpt.road import Design, Road, World, build
+from roadgpt_sbft.validator import sbft_verdict
 
 EVALUATION = {  # the thesis' prompts, and what an outside referee asks of their roads
     "a road": {"turns": [1, None]},
@@ -89,7 +90,7 @@ def _campaign(words: str, truth: dict[str, Any], referee: ModuleType | None, see
 
 
 def _is_valid(road: Road, brief: Brief) -> bool:
-    fine = check.sbft_verdict(road.control_points(), WORLD.site.map_size)[0]
+    fine = sbft_verdict(road.control_points(), WORLD.site.map_size)[0]
     return fine and not check.inspect(road, brief, WORLD)
 
 

@@ -14,8 +14,8 @@ from collections import Counter
 from itertools import islice
 from pathlib import Path
 
-from roadgpt.check import sbft_verdict
 from roadgpt_sbft import Experiment, RoadGPTTestGenerator, compete
+from roadgpt_sbft.validator import sbft_verdict
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples" / "sbft"
 TESTS = int(sys.argv[1]) if sys.argv[1:] else 200

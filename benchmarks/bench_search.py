@@ -33,10 +33,10 @@ from scipy.stats import bootstrap, mannwhitneyu
 from roadgpt.campaign import Cell, CellBudget, Proposal, Result
 from roadgpt.campaign.columns import cell_of, features_in
 from roadgpt.campaign.single_test import Task, execute, result_of
-from roadgpt.check import sbft_verdict
 from roadgpt.road import Limits, Road, Site, World, build
 from roadgpt.run import Request, Setup, brief_of, prove
 from roadgpt_sbft.sparseness import Sparseness, departure
+from roadgpt_sbft.validator import sbft_verdict
 from roadgpt_search.behaviour import BOUNDS
 from roadgpt_search.genetic import Genetic
 from roadgpt_search.quality_diversity import QualityDiversity

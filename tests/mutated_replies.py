@@ -18,6 +18,7 @@ from roadgpt.chat import ChatSettings
 from roadgpt.design.designers.thesis import ThesisDesigner
 from roadgpt.errors import RoadGPTError
 from roadgpt.road import Road, World, build
+from roadgpt_sbft.validator import sbft_verdict
 
 WORLD = World()
 BRIEFS = (
@@ -181,7 +182,7 @@ def outcome(seed: int) -> str:
 
 def assert_keeps_the_rules(road: Road, by_all_pairs: bool) -> None:
     """Looked at without the rules: by the published algorithm, which takes long, and on the finished road."""
-    verdict = slow.verdict if by_all_pairs else check.sbft_verdict
+    verdict = slow.verdict if by_all_pairs else sbft_verdict
     assert verdict(road.control_points().tolist(), WORLD.site.map_size) == (True, "")
     points = road.centreline()
     assert np.isfinite(points).all()

@@ -11,13 +11,12 @@ from typing import Any
 import numpy as np
 
 from roadgpt import __version__
-from roadgpt.check import sbft_verdict
 from roadgpt.check.ribbon import quads_of
-from roadgpt.check.sbft import keeps_clear
 from roadgpt.children import private_streams
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.geometry import interpolate
 from roadgpt_sbft.client import Message, received, send
+from roadgpt_sbft.validator import keeps_clear, sbft_verdict
 
 LONGEST = 50_000.0  # m of control polyline; the spline through a longer one would fill the memory
 

@@ -11,8 +11,7 @@ from typing import Any, Literal
 import numpy as np
 
 from roadgpt.brief.model import Frozen
-from roadgpt.check import Finding, sbft_verdict
-from roadgpt.check.sbft import TOO_FEW
+from roadgpt.check import Finding
 from roadgpt.errors import PartError, RoadGPTError, UsageError
 from roadgpt.road import ORACLES, Limits, Road, Site, World
 from roadgpt.run import Draw, Request, Run, Seconds, Setup, check_parts, prove
@@ -21,6 +20,7 @@ from roadgpt.stopping import look
 from roadgpt_sbft.client import Message
 from roadgpt_sbft.generator_process import GeneratorExitedError, GeneratorProcess
 from roadgpt_sbft.results import LOG, Experiment, Results, new_folder
+from roadgpt_sbft.validator import TOO_FEW, sbft_verdict
 
 USUAL = World(site=Site(map_size=200.0), limits=Limits(**ORACLES["thesis"]))
 GROUND = 0.0  # m: the competition's roads are level, and points without heights are at this height

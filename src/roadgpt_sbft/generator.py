@@ -15,7 +15,6 @@ from typing import Any, TypeVar
 from roadgpt.brief.model import Brief
 from roadgpt.campaign.model import Cell, Proposal, Result
 from roadgpt.chat import ReplyError
-from roadgpt.check import sbft_verdict
 from roadgpt.design import draft_road
 from roadgpt.errors import DesignError, UsageError
 from roadgpt.geometry import interpolate
@@ -23,6 +22,7 @@ from roadgpt.road import ORACLES, Design, Limits, Road, Site, World, build
 from roadgpt.run import Request, Setup, brief_of, perform
 from roadgpt.run.execution import FEWEST_RECORDS, features_of, features_of_drive
 from roadgpt_sbft.client import ClientTestGenerator
+from roadgpt_sbft.validator import sbft_verdict
 from roadgpt_search.behaviour import behaviour_of
 from roadgpt_search.quality_diversity import QualityDiversity
 

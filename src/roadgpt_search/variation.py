@@ -21,7 +21,7 @@ from roadgpt.brief.element import Element, Elements
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
 from roadgpt.brief.ranges import Range
-from roadgpt.check import inspect, sbft_verdict
+from roadgpt.check import inspect
 from roadgpt.design import draft_road
 from roadgpt.design.elements import as_written, design_of, elements_of
 from roadgpt.design.layout import MapPose, PlacedPlan, bends_of, keeps_clear, place, walk
@@ -378,10 +378,7 @@ def validated(design: Design, setting: VariationContext, origin: str) -> Candida
         road = setting.world.lay(build(design))
         if inspect(road, setting.brief, setting.world):
             return None
-        if (
-            setting.rules == "sbft"
-            and not sbft_verdict(road.control_points(), setting.world.site.map_size)[0]
-        ):
+        if setting.rules == "sbft" and inspect(road, None, setting.world, "sbft"):
             return None
     except (RoadGPTError, ValueError):  # a spline of this road cannot be laid: it is no candidate
         return None

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 
 from authorities import sbft_official_slow as slow
 from authorities.sbft_roads import mutated, random_road
-from roadgpt.check import sbft_verdict
 from roadgpt.errors import UsageError
+from roadgpt_sbft.validator import sbft_verdict
 
 # Lies beside the checkout where the project is built; not part of it.
 OFFICIAL = Path(__file__).resolve().parents[3] / "shared" / "data" / "sbft_verdicts.jsonl.gz"

@@ -7,9 +7,10 @@ import tracemalloc
 import pytest
 
 from network.ruled import findings
-from roadgpt.check import inspect, sbft_verdict
+from roadgpt.check import inspect
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.road import Road, Site, World
+from roadgpt_sbft.validator import sbft_verdict
 
 WORLD = World(site=Site(map_size=10_000))
 SECONDS, BYTES = 2.0, 200_000_000

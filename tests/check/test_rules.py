@@ -136,9 +136,10 @@ class TestInsideMap:
         runs_over = [n for n in lengths if len(np.arange(0, 1 + 1 / n, 1 / n)) > n + 1]
         keeps = next(n for n in lengths if n not in runs_over)
         over, just = (straight(n, x=249.5 - n) for n in (runs_over[0], keeps))
-        assert "with SBFT's spline the road leaves the map" in the_finding("inside_map", over).sentence
-        assert "near (250, 50)" in the_finding("inside_map", over).sentence
-        assert not findings("inside_map", just)
+        assert "with SBFT's spline the road leaves the map" in the_finding("sbft_spline", over).sentence
+        assert "near (250, 50)" in the_finding("sbft_spline", over).sentence
+        assert not findings("inside_map", over)
+        assert not findings("sbft_spline", just)
         assert findings("sbft", over)
         assert not findings("sbft", just)
 
@@ -308,8 +309,9 @@ class TestTooTight:
     def test_fails_as_sbft_measures_it(self) -> None:
         """Dense points keep a radius; SBFT's circles through a jump of curvature see a little less of it."""
         road = turning((30, math.inf), (40, 14.33), (30, math.inf))
-        sentence = the_finding("too_tight", road).sentence
+        sentence = the_finding("sbft_spline", road).sentence
         assert "as SBFT measures it on its spline" in sentence
+        assert not findings("too_tight", road)  # its arc is as wide as it must be
 
     def test_three_turns_of_seventy_degrees_by_spline_are_rejected(self) -> None:
         """RoadGPT measured control points, too few of them here, and let this road pass."""

@@ -16,8 +16,7 @@ import pytest
 
 from authorities.sbft_official_slow import verdict
 from roadgpt.campaign.model import Cell
-from roadgpt.check.sbft import radii
-from roadgpt.geometry import interpolate
+from roadgpt.geometry import interpolate, radii
 from roadgpt.road import Site, World
 from roadgpt_sbft import RoadGPTTestGenerator, generator
 from roadgpt_sbft.command import sbft_command

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from roadgpt import check
 from roadgpt.brief import read
 from roadgpt.brief.element import Element, Elements
-from roadgpt.check import sbft_verdict
 from roadgpt.design.elements import as_written, design_of, elements_of, segments_of
 from roadgpt.design.layout import MapPose
 from roadgpt.road import Design, Road, Segment, Site, World, build
+from roadgpt_sbft.validator import sbft_verdict
 from roadgpt_search.variation import (
     MUTATIONS,
     Candidate,

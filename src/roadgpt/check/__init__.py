@@ -21,7 +21,6 @@ from typing import TYPE_CHECKING, TypeAlias, cast
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding
-from roadgpt.check.sbft import sbft_verdict
 from roadgpt.errors import UsageError
 from roadgpt.network import network_of
 from roadgpt.road import Road, World
@@ -84,4 +83,4 @@ def rules_of(rules: str, are_joined: bool = False) -> tuple[tuple[str, Rule], ..
     return tuple((name, cast(Rule, plugins.find("rules", name))) for name in wanted)
 
 
-__all__ = ["RULE_SETS", "Finding", "Rule", "inspect", "rules_of", "sbft_verdict"]
+__all__ = ["RULE_SETS", "Finding", "Rule", "inspect", "rules_of"]

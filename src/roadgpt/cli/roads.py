@@ -30,6 +30,7 @@ LANES = ("lanes", "lane_width", "lane_width_end", "shoulder", "bank")
 """Fields of the World that have no effect on a road with a cross-section of its own."""
 WITHOUT_MAP = (".xodr", ".csv", ".tsv")  # endings of formats that know no map
 ROOM = 20.0  # m kept free around a road that is moved onto the map
+BORDER = 1.5  # m between a road and the border of its map, or a spline through its points may leave the map
 ROUND_MAP = 50.0  # m, to which the size of a map is rounded up
 ENDINGS = (".json", ".jsonl", ".xodr", ".csv", ".tsv", ".sbft")
 BESIDE_A_ROAD = (".drive.csv", ".route.json")  # endings of files that exporters write beside a road
@@ -257,15 +258,14 @@ def on_a_map(
     from roadgpt.brief.words import LARGEST_MAP
     from roadgpt.check.extremes import lowest
     from roadgpt.check.ribbon import extent
-    from roadgpt.check.sbft import SPLINE_REACH
     from roadgpt.network import network_of
 
     members, remarks, x, y, z = network_of(world.lay(road), world).roads, list[str](), 0.0, 0.0, 0.0
     spans = [extent(each.road.sample(), each.profile.edges(each.road.sample().s)) for each in members]
     low, high = np.min([low for low, _ in spans], axis=0), np.max([high for _, high in spans], axis=0)
-    wide = float(high.max()) + SPLINE_REACH if keep_place else float((high - low).max()) + 2 * ROOM
+    wide = float(high.max()) + BORDER if keep_place else float((high - low).max()) + 2 * ROOM
     size = max(world.site.map_size, ROUND_MAP * ceil(wide / ROUND_MAP))
-    fits = (low > SPLINE_REACH).all() and (high < size - SPLINE_REACH).all()
+    fits = (low > BORDER).all() and (high < size - BORDER).all()
     if keep_place and not (fits and size <= LARGEST_MAP):
         size = world.site.map_size
         remarks.append("its place is off the map; roadgpt import without --keep-place moves it onto one")

@@ -8,7 +8,7 @@ from roadgpt.geometry.curve import ElevationProfile, PlanCurve, wrap_angle
 from roadgpt.geometry.elevation import CubicProfile, GradeProfile, shifted
 from roadgpt.geometry.nearness import project
 from roadgpt.geometry.pieces import Piece, PieceCurve
-from roadgpt.geometry.spline import SplineCurve, SplineProfile, interpolate, walked
+from roadgpt.geometry.spline import SplineCurve, SplineProfile, interpolate, radii, walked
 
 __all__ = [
     "CubicProfile",
@@ -21,6 +21,7 @@ __all__ = [
     "SplineProfile",
     "interpolate",
     "project",
+    "radii",
     "shifted",
     "walked",
     "wrap_angle",

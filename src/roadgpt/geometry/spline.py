@@ -17,6 +17,7 @@ from roadgpt.geometry.curve import Array
 
 MIN_NODES = 20  # least number of intervals between interpolated points, however short the road
 DECIMALS = 3  # the competition rounds interpolated points to millimetres
+STRAIGHT = 1e-6  # m^2: three nodes that span less (twice the triangle's area) lie on a line
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
 _NEWTON = 8  # Newton steps at most; two are enough where nodes are close together
 _CLOSE = 1e-4  # m; a Newton step that starts with a smaller error is the last
@@ -64,6 +65,21 @@ def interpolate(points: ArrayLike, fewest: int = MIN_NODES, decimals: int = DECI
     count = max(fewest, int(walked(points[:, :2])))
     u = np.arange(0, 1 + 1 / count, 1 / count)
     return np.asarray(np.round(np.stack(scipy.interpolate.splev(u, tck), axis=-1), decimals), float)
+
+
+def radii(nodes: Array) -> Array:
+    """Returns radii ``(n - 5,)`` in metres of the circles through nodes i, i+2, i+4 of ``(n, 2)``; infinite
+    where the three nodes are collinear."""
+    a, b, c = nodes[:-5], nodes[2:-3], nodes[4:-1]
+    (ax, ay), (bx, by), (cx, cy) = a.T, b.T, c.T
+    square = bx * bx + by * by
+    p, q = (ax * ax + ay * ay - square) / 2, (square - cx * cx - cy * cy) / 2
+    area = (ax - bx) * (by - cy) - (bx - cx) * (ay - by)
+    bends = np.abs(area) >= STRAIGHT
+    area = np.where(bends, area, 1.0)
+    x = (p * (by - cy) - q * (ay - by)) / area
+    y = ((ax - bx) * q - (bx - cx) * p) / area
+    return np.where(bends, np.sqrt((x - ax) ** 2 + (y - ay) ** 2), np.inf)
 
 
 @dataclass(frozen=True, eq=False)

@@ -45,8 +45,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from roadgpt.brief.words import USUAL_MAP
-from roadgpt.check.sbft import radii
 from roadgpt.drive import Drive
+from roadgpt.geometry import radii
 from roadgpt.road import Road, World
 from roadgpt.run.atomic import json_text
 from roadgpt.run.model import Run

@@ -4,17 +4,13 @@ The map extends from 0 to ``map_size`` along x and y; shoulders may extend beyon
 network count as touching the border if they come within 11 mm of it. Source: two checks of the RoadGPT thesis
 (the road fits into the map, and no part of it touches the border) and one of the SBFT competition. The
 competition's code accepts some roads far outside the map, because of an operator precedence error; this rule
-rejects them. Near the border, the competition's spline of a single road is checked as well, in both driving
-directions, because it may run up to a metre beyond the end of the road. Findings about networks are called
-``leaves_map``."""
+rejects them. Findings about networks are called ``leaves_map``."""
 
 import numpy as np
 
 from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding, owner_of, single_road, station_on
 from roadgpt.check.ribbon import bulge, extent, sides
-from roadgpt.check.sbft import SPLINE_REACH, splines
-from roadgpt.check.sbft import edges as sbft_edges
 from roadgpt.network import Network
 from roadgpt.road import Road, World
 
@@ -28,9 +24,8 @@ def inspect(network: Network, route: Road | None, brief: Brief | None, world: Wo
     samples, size = road.sample(), world.site.map_size
     offsets = network.roads[0].profile.edges(samples.s)
     low, high = extent(samples, offsets)
-    room = min(low.min(), size - high.max())
-    if room > 0:
-        return () if room > SPLINE_REACH else _on_sbft_s_spline(road, world)
+    if low.min() > 0 and high.max() < size:
+        return ()
     edges, slack = np.stack(sides(samples, offsets), axis=1), bulge(samples, offsets)  # (n, 2 sides, 2)
     out = np.any((edges <= slack) | (edges >= size - slack), axis=2)
     first = int(out.any(axis=1).argmax())
@@ -45,20 +40,6 @@ def inspect(network: Network, route: Road | None, brief: Brief | None, world: Wo
             wide = f"the road spans {spanned:.0f} m along {axis}, and the map is only {size:g} m wide"
             found.append(Finding("inside_map", wide))
     return tuple(found)
-
-
-def _on_sbft_s_spline(road: Road, world: World) -> tuple[Finding, ...]:
-    ways = splines(road.control_points())
-    nodes = np.concatenate(ways)
-    edges = np.concatenate([np.stack(sbft_edges(way, world.section.road_width), axis=1) for way in ways])
-    if edges.min() > 0 and edges.max() < world.site.map_size:
-        return ()
-    node = int(np.any((edges <= 0) | (edges >= world.site.map_size), axis=(1, 2)).argmax())
-    x, y = (float(v) for v in nodes[node])
-    sentence = (
-        f"near ({x:.0f}, {y:.0f}): with SBFT's spline the road leaves the map; keep away from its border"
-    )
-    return (Finding("inside_map", sentence, float(road.locate(x, y)[0]), x, y),)
 
 
 def _of_network(network: Network, route: Road | None, world: World) -> tuple[Finding, ...]:

@@ -6,9 +6,7 @@ about 1 m long. A quad that is not convex shows that the surface folds: the radi
 half the road width. Without folds, quads that are closer together along the road than half a circle of the
 tightest radius cannot overlap (Schur's comparison theorem), so only quads farther apart are compared. The
 curved edge of the road bulges slightly beyond the straight edges of the quads, so the gap between two quads
-must be more than twice this bulge. Where quads of a single road nearly touch, the competition's own quads are
-checked as well, in both driving directions, because the competition's spline may run up to a metre beyond the
-last point.
+must be more than twice this bulge.
 
 Different roads are compared as polygons; an overlap outside junctions would be a crossing that no connection
 describes. Connecting roads of one junction may overlap; roads of one roundabout are compared by the rule
@@ -19,7 +17,6 @@ import numpy as np
 from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding, owner_of, road_finding, single_road, station_on
 from roadgpt.check.ribbon import bulge, is_convex, near_pairs, quads_of, sides
-from roadgpt.check.sbft import SPLINE_REACH, edges, keeps_clear, splines
 from roadgpt.network import Network, NetworkRoad
 from roadgpt.network.landscape import CLEARANCE
 from roadgpt.road import Road, World
@@ -33,17 +30,17 @@ def inspect(network: Network, route: Road | None, brief: Brief | None, world: Wo
     road = single_road(route)
     if road is None:
         return _in_network(network, route, world)
-    found, nearest, gap = overlap_with_itself(network.roads[0], world)
-    if found is not None:
-        return (_finding(road, *found),)
-    return _on_sbft_s_spline(road, world, nearest) if gap < SPLINE_REACH else ()
+    found, *_ = overlap_with_itself(network.roads[0], world)
+    return () if found is None else (_finding(road, *found),)
 
 
-def overlap_with_itself(member: NetworkRoad, world: World) -> tuple[tuple[int, str] | None, int, float]:
+def overlap_with_itself(
+    member: NetworkRoad, world: World, reach: float = 0.0
+) -> tuple[tuple[int, str] | None, int, float]:
     """Returns three values: the index of the first sample at which the road folds or overlaps an earlier
     part, and what is wrong there (None: nothing is wrong); the index of the sample that is nearest to an
     earlier part (0 if the road folds, or no parts are close); and the metres between these two parts. The
-    metres are 0 if the road folds or overlaps itself, and may be infinite above ``SPLINE_REACH``."""
+    metres are 0 if the road folds or overlaps itself, and may be infinite above ``reach``."""
     import shapely
 
     samples = member.road.sample()
@@ -60,7 +57,7 @@ def overlap_with_itself(member: NetworkRoad, world: World) -> tuple[tuple[int, s
         radius = narrowest  # as the surface does not fold, no bend is tighter
     half_turn = np.pi * radius / max(float(samples.s[1] - samples.s[0]), 1e-9)
     shapes, nearest = shapely.polygons(quads), (np.inf, 0)
-    for i, j in near_pairs(quads, reach=SPLINE_REACH, apart=max(2, int(min(half_turn, len(quads))))):
+    for i, j in near_pairs(quads, reach=max(slack, reach), apart=max(2, int(min(half_turn, len(quads))))):
         if world.has_ground:
             is_level = np.abs(samples.z[i] - samples.z[j]) < CLEARANCE
             i, j = i[is_level], j[is_level]
@@ -82,13 +79,6 @@ def _is_above(one: NetworkRoad, other: NetworkRoad) -> bool:
     near = np.abs(t) < one.profile.reach + other.profile.reach
     rises = np.abs(points[near, 2] - other.road.elevation.height(s[near]))
     return bool(rises.min(initial=np.inf) >= CLEARANCE)
-
-
-def _on_sbft_s_spline(road: Road, world: World, nearest: int) -> tuple[Finding, ...]:
-    ways = splines(road.control_points())
-    if all(keeps_clear(quads_of(*edges(nodes, world.section.road_width))) for nodes in ways):
-        return ()
-    return (_finding(road, nearest, "with SBFT's spline the road touches itself; move the two parts apart"),)
 
 
 def _finding(road: Road, index: int, what: str) -> Finding:

@@ -1,15 +1,12 @@
 """Requires all turns to have a radius of at least 14.326 m (47 ft), the limit of the SBFT competition.
 
 The radius is measured on the curve of each road outside junctions and roundabouts; inside them, turns may be
-tighter: see ``connection_too_tight``. A single road is measured twice, also as in the competition, where
-circles are drawn through nodes of the competition's spline. That spline cuts corners between control points.
+tighter: see ``connection_too_tight``.
 """
 
 from roadgpt.brief.model import Brief
 from roadgpt.check.extremes import tightest
-from roadgpt.check.finding import Finding, road_finding, single_road
-from roadgpt.check.sbft import smallest_radius
-from roadgpt.geometry import interpolate
+from roadgpt.check.finding import Finding, road_finding
 from roadgpt.network import Network
 from roadgpt.road import Road, World
 
@@ -25,15 +22,4 @@ def inspect(network: Network, route: Road | None, brief: Brief | None, world: Wo
             continue
         what = f"radius {1 / abs(bend):.1f} m is tighter than {limit:.4g} m"
         found.append(road_finding("too_tight", route, member, s, what))
-    road = single_road(route)
-    if found or road is None:
-        return tuple(found)
-    nodes = interpolate(road.control_points())
-    radius, middle = smallest_radius(nodes)
-    if radius >= limit:
-        return ()
-    x, y = (float(v) for v in nodes[middle])
-    s = float(road.locate(x, y)[0])
-    sentence = f"at s = {s:.0f} m: radius {radius:.1f} m, as SBFT measures it on its spline, is "
-    sentence += f"tighter than {limit:.4g} m"
-    return (Finding("too_tight", sentence, s, x, y),)
+    return tuple(found)

@@ -1,4 +1,5 @@
-"""Reproduces the SBFT tool competition's road validator: the same rules, order and messages, but faster.
+"""Reproduces the SBFT tool competition's road validator: the same rules, order and messages, but faster. It
+is the rule ``sbft``; the rule ``sbft_spline`` is about the road that the competition would build.
 
 Source: the Cyber-Physical Systems tool competition's validator (2024). These quirks of the validator are
 reproduced on purpose:
@@ -13,21 +14,30 @@ The competition's validator compares every pair of quads with the library shapel
 shapely compares at once those pairs whose bounding boxes meet."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from roadgpt.check.ribbon import Indices, is_convex, near_pairs, quads_of
+from roadgpt.brief.model import Brief
+from roadgpt.check import Finding, ribbon
+from roadgpt.check.extremes import tightest
+from roadgpt.check.finding import single_road
+from roadgpt.check.rules.no_overlap import overlap_with_itself
 from roadgpt.errors import UsageError
-from roadgpt.geometry import interpolate, walked
-from roadgpt.geometry.curve import Array
+from roadgpt.geometry import interpolate, radii, walked
+from roadgpt.network import Network
+from roadgpt.road import Road, World
+
+Array = NDArray[np.float64]
 
 ROAD_WIDTH = 8.0  # m, of every competition road
 FEET_PER_METRE = 3.280839895
 MIN_RADIUS = 47.0  # ft
 MIN_LENGTH = 20.0  # m
 MAX_POINTS = 500
-STRAIGHT = 1e-6  # m^2: three nodes that span less (twice the triangle's area) lie on a line
+DOUBT = 1.0  # m: if the road is longer than its limit by more, the competition's measure agrees
+ROUNDING = 1e-9  # of the least radius
 SPLINE_REACH = 1.5  # m by which the competition's spline may leave a road: a node 1 m too far, and rounding
 
 TOO_FEW = "Not enough road points."
@@ -58,7 +68,7 @@ def _complaint(nodes: Array, map_size: float) -> str:
     left, right = edges(nodes)
     if not _passes_for_inside(nodes, map_size) or _meets_border(left, right, map_size):
         return OUTSIDE
-    if not keeps_clear(quads_of(left, right)):
+    if not keeps_clear(ribbon.quads_of(left, right)):
         return CROSSING
     apart = nodes[-1] - nodes[0]  # the road is no shorter than the distance between its ends
     if apart @ apart <= (MIN_LENGTH + 1) ** 2 and measured_length(nodes) <= MIN_LENGTH:
@@ -66,13 +76,6 @@ def _complaint(nodes: Array, map_size: float) -> str:
     if smallest_radius(nodes)[0] * FEET_PER_METRE < MIN_RADIUS:
         return TOO_SHARP
     return ""
-
-
-def splines(points: Array) -> tuple[Array, Array]:
-    """Returns the nodes of the spline through control points ``(n, 2)``, for driving forwards and backwards.
-    The two arrays ``(m, 2)`` contain different points, because nodes are spaced from the first control point
-    in the direction of driving, and one extra node may lie beyond the last control point."""
-    return interpolate(points), interpolate(points[::-1])
 
 
 def edges(nodes: Array, road_width: float = ROAD_WIDTH) -> tuple[Array, Array]:
@@ -113,13 +116,13 @@ def keeps_clear(quads: Array) -> bool:
     of quads are disjoint."""
     import shapely
 
-    plain = is_convex(quads)
+    plain = ribbon.is_convex(quads)
     if not np.isfinite(quads[~plain]).all():
         return False
     shapes = shapely.polygons(quads)
     if not shapely.is_valid(shapes[~plain]).all():
         return False
-    for i, j in near_pairs(quads, reach=0.0):
+    for i, j in ribbon.near_pairs(quads, reach=0.0):
         differ = (quads[i] != quads[j]).any(axis=(1, 2))
         if shapely.intersects(shapes[i[differ]], shapes[j[differ]]).any():
             return False
@@ -128,7 +131,7 @@ def keeps_clear(quads: Array) -> bool:
     return not joints.size or _share_a_side(quads, joints)
 
 
-def _share_a_side(quads: Array, joints: Indices) -> bool:
+def _share_a_side(quads: Array, joints: NDArray[np.intp]) -> bool:
     """Returns whether quads i and i + 1 share exactly one line for every joint i; ignores equal quads."""
     import shapely
 
@@ -154,16 +157,81 @@ def smallest_radius(nodes: Array) -> tuple[float, int]:
     return float(found[least]), least + 2
 
 
-def radii(nodes: Array) -> Array:
-    """Returns radii ``(n - 5,)`` in metres of the circles through nodes i, i+2, i+4 of ``(n, 2)``; infinite
-    where the three nodes are collinear."""
-    a, b, c = nodes[:-5], nodes[2:-3], nodes[4:-1]
-    (ax, ay), (bx, by), (cx, cy) = a.T, b.T, c.T
-    square = bx * bx + by * by
-    p, q = (ax * ax + ay * ay - square) / 2, (square - cx * cx - cy * cy) / 2
-    area = (ax - bx) * (by - cy) - (bx - cx) * (ay - by)
-    bends = np.abs(area) >= STRAIGHT
-    area = np.where(bends, area, 1.0)
-    x = (p * (by - cy) - q * (ay - by)) / area
-    y = ((ax - bx) * q - (bx - cx) * p) / area
-    return np.where(bends, np.sqrt((x - ax) ** 2 + (y - ay) ** 2), np.inf)
+def official(network: Network, route: Road | None, brief: Brief | None, world: World) -> tuple[Finding, ...]:
+    """Requires the road to pass the competition's validator. Reports its message if it rejects the control
+    points. A route through junctions never passes: the competition tests single roads."""
+    road = single_road(route)
+    if road is None:
+        return (Finding("sbft", "the road leads through junctions, and SBFT tests are single roads"),)
+    try:
+        is_valid, message = sbft_verdict(road.control_points(), world.site.map_size)
+    except UsageError as error:  # two points coincide in plan: the competition's code stops
+        is_valid, message = False, str(error)
+    return () if is_valid else (Finding("sbft", message),)
+
+
+def spline(network: Network, route: Road | None, brief: Brief | None, world: World) -> tuple[Finding, ...]:
+    """Requires a single road to keep the limits of length, map, radius and overlap also as the competition
+    builds it: as a spline through the control points, which cuts corners between them, and may run up to a
+    metre beyond the last one, driven forwards and backwards. Reports only what the road itself keeps: the
+    rules ``too_short``, ``inside_map``, ``too_tight`` and ``no_overlap`` say the rest."""
+    road = single_road(route)
+    if road is None:
+        return ()
+    points = road.control_points()
+    ways = interpolate(points), interpolate(points[::-1])  # nodes are spaced from the first point on
+    rows = [edges(nodes, world.section.road_width) for nodes in ways]
+    found = (
+        _too_short(road, ways[0], world.limits.min_length),
+        _outside(network, road, ways, rows, world.site.map_size),
+        _too_tight(road, ways[0], world.limits.min_radius),
+        _touching(network, road, rows, world),
+    )
+    return tuple(each for each in found if each is not None)
+
+
+def _too_short(road: Road, nodes: Array, limit: float) -> Finding | None:
+    if not limit < road.length <= limit + DOUBT or (length := measured_length(nodes)) > limit:
+        return None
+    said = f"the road is {length:.1f} m long, as SBFT measures it, and a road is longer than {limit:g} m"
+    return Finding("sbft_spline", said)
+
+
+def _outside(
+    network: Network, road: Road, ways: Sequence[Array], rows: Sequence[tuple[Array, Array]], size: float
+) -> Finding | None:
+    sides = np.concatenate([np.stack(row, axis=1) for row in rows])
+    if sides.min() > 0 and sides.max() < size:
+        return None
+    samples = road.sample()
+    low, high = ribbon.extent(samples, network.roads[0].profile.edges(samples.s))
+    if not 0 < min(low.min(), size - high.max()) <= SPLINE_REACH:
+        return None
+    node = int(np.any((sides <= 0) | (sides >= size), axis=(1, 2)).argmax())
+    x, y = (float(v) for v in np.concatenate(ways)[node])
+    said = f"near ({x:.0f}, {y:.0f}): with SBFT's spline the road leaves the map; keep away from its border"
+    return Finding("sbft_spline", said, float(road.locate(x, y)[0]), x, y)
+
+
+def _too_tight(road: Road, nodes: Array, limit: float) -> Finding | None:
+    radius, middle = smallest_radius(nodes)
+    if radius >= limit or abs(tightest(road)[1]) * limit > 1 + ROUNDING:
+        return None
+    x, y = (float(v) for v in nodes[middle])
+    s = float(road.locate(x, y)[0])
+    said = f"at s = {s:.0f} m: radius {radius:.1f} m, as SBFT measures it on its spline, is tighter than "
+    return Finding("sbft_spline", f"{said}{limit:.4g} m", s, x, y)
+
+
+def _touching(
+    network: Network, road: Road, rows: Sequence[tuple[Array, Array]], world: World
+) -> Finding | None:
+    if all(keeps_clear(ribbon.quads_of(*row)) for row in rows):
+        return None
+    found, nearest, gap = overlap_with_itself(network.roads[0], world, SPLINE_REACH)
+    if found is not None or gap >= SPLINE_REACH:  # far apart, or, in land, one above the other
+        return None
+    samples = road.sample()
+    s, x, y = (float(v[nearest]) for v in (samples.s, samples.x, samples.y))
+    said = f"at s = {s:.0f} m, near ({x:.0f}, {y:.0f}): with SBFT's spline the road touches itself; move the "
+    return Finding("sbft_spline", f"{said}two parts apart", s, x, y)
