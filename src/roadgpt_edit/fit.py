@@ -1,6 +1,6 @@
 """Changes the free elements of a road as little as needed to meet requirements. Main function: ``fit``.
 
-    elements --look--> what is wrong? --aim_of--> limits --least_change--> segments --graded--> FittedRoad
+    elements --checked_road--> what is wrong? --aim_of--> limits --least_change--> segments --graded--> road
 
 An edit first freezes every element that the request does not name: the element's lengths, turns and radii
 stay exactly as they are. Only if no valid road is found that way, all elements are free. The road as a whole
@@ -753,7 +753,7 @@ def fit(
     such road was found, that of the design, moved inside the map if possible. Raises UsageError if no road
     can be built from these segments."""
     world, before = requirements.world, requirements.before
-    first = look(design, elements, requirements)
+    first = checked_road(design, elements, requirements)
     free = np.array([element.name not in frozen for element in elements for _ in element.segments])
     if not first.objection or not 1 <= free.sum() <= MOST_SEGMENTS:
         return first
@@ -771,13 +771,13 @@ def fit(
             continue
         design = first.design.model_copy(update={"segments": segments})
         design = graded(design, first.elements, world, before)
-        last = look(design, first.elements, requirements)
+        last = checked_road(design, first.elements, requirements)
         if not last.objection:
             return last if before else _restored(last, first)
     return first
 
 
-def look(design: Design, elements: RoadElements, requirements: Requirements) -> FittedRoad:
+def checked_road(design: Design, elements: RoadElements, requirements: Requirements) -> FittedRoad:
     """Builds and checks the road of a design, and returns its FittedRoad. The elements of that are
     ``elements`` with the segments of the design. If the road is not inside the map and above the ground, it
     is moved there if possible."""
@@ -818,10 +818,10 @@ def _restored(mended: FittedRoad, first: FittedRoad) -> FittedRoad:
             continue  # the radius belongs to the proposed distance and angle
         rows[index] = now.model_copy(update={name: getattr(was, name)})
         tried = first.design.model_copy(update={"segments": tuple(rows)})
-        seen = look(tried, first.elements, first.requirements)
+        seen = checked_road(tried, first.elements, first.requirements)
         if not seen.objection:
             mended = seen
     return mended
 
 
-__all__ = ["FittedRoad", "Requirements", "fit", "look"]
+__all__ = ["FittedRoad", "Requirements", "checked_road", "fit"]

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import special, stats
 
-from roadgpt.report.statistics import CONFIDENCE, Array, Interval, complete_rows, holm
+from roadgpt.geometry.curve import Array
+from roadgpt.report.statistics import CONFIDENCE, Interval, complete_rows, holm
 
 MOST_TABLES = 2_000_000  # tables with the same sums; if there are more, a sample of them is drawn
 DRAWN, FEWEST = 99_999, 999  # number of tables that are drawn: usually, and if they are very large

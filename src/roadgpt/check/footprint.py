@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from roadgpt.geometry import GradeProfile, PieceCurve
 from roadgpt.geometry.curve import Array
+from roadgpt.geometry.nearness import Indices
 from roadgpt.geometry.pieces import along_all
 from roadgpt.network import Network, NetworkRoad, RoadEnd
 from roadgpt.network.network import Contact
@@ -22,8 +23,6 @@ SAG = 0.01  # m, between the edge of a bend and the chords of its polygon
 TRIM = 1e-3  # m, by which polygons end before the road, so that roads that are joined do not touch
 SLACK = SAG + TRIM  # m, by which the true carriageway may extend beyond its polygon
 CONTACTS: tuple[Contact, ...] = ("start", "end")
-
-Indices = NDArray[np.intp]
 
 
 class EndPose(NamedTuple):

@@ -36,6 +36,7 @@ from roadgpt.brief.outline import USUALLY_WIDEST
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, PieceCurve
 from roadgpt.geometry.curve import Array
+from roadgpt.geometry.nearness import Indices
 from roadgpt.geometry.pieces import along_all
 from roadgpt.language.names import Control, JunctionKind, LaneKind, Side, Way
 from roadgpt.network import Connection, Junction, Network, NetworkRoad, RoadEnd
@@ -60,8 +61,6 @@ FULL = 0.9  # of the width of a lane, above which it is not yet in its taper
 OUT = 15.0  # m, from a contact to the point that gives the direction of its arm
 LANE_STEP = 0.5  # m, between stations at which the width of a lane is measured
 STRAIGHT_ROAD = math.radians(5.0)  # largest change of heading of a road that counts as straight
-
-Indices = NDArray[np.intp]
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.geometry.curve import Array
+from roadgpt.geometry.nearness import Indices
 from roadgpt.road import Edges, Samples
-
-Indices = NDArray[np.intp]
 
 PORTION = 512  # quads that are compared with all others at a time
 SLIVER = 1e-6  # m^2: a corner flatter than this does not count as convex

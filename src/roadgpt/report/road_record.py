@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
@@ -20,6 +19,7 @@ from roadgpt.check import inspect
 from roadgpt.check.measures import measure
 from roadgpt.check.truth import KeptCriterion, Truth, criteria_of
 from roadgpt.errors import RoadGPTError
+from roadgpt.geometry.curve import Array
 from roadgpt.report.canvas import FORMATS
 from roadgpt.report.similarity import Likeness, Spread, likeness, spread
 from roadgpt.road import Road, World
@@ -27,8 +27,6 @@ from roadgpt.run import Run
 from roadgpt.run.folder import is_run
 from roadgpt.run.versions import Versions
 from roadgpt.verdict.verdict import DEPARTURES
-
-Array = NDArray[np.float64]
 
 MOST_COMPARED = 150  # roads of a part, each of which is compared with every other one
 STRAIGHT = np.stack([np.linspace(0.0, 30.0, 31), np.zeros(31)], axis=1)

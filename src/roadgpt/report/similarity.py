@@ -22,16 +22,14 @@ from itertools import combinations
 from math import nan
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roadgpt.check.measures import measure
 from roadgpt.design.variety import ENOUGH, POINTS, PlanShape, shape_of
 from roadgpt.errors import UsageError
+from roadgpt.geometry.curve import Array
 from roadgpt.network import refuse_without_route
 from roadgpt.road import Road
 from roadgpt.run.step_distance import distances, steps_of
-
-Array = NDArray[np.float64]
 
 HALF_GRADE = 2.0  # percentage points, mean difference; a driver feels that it is a different hill
 HALF_SHAPE = ENOUGH  # m RMS: the smallest distance that the planner keeps between its roads

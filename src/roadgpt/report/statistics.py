@@ -12,10 +12,10 @@ from math import nan
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import stats
 
-Array = NDArray[np.float64]
+from roadgpt.geometry.curve import Array
 
 LEVEL = 0.05  # of all tests: differences with a smaller p count as significant
 CONFIDENCE = 0.95  # of all intervals

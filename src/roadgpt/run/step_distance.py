@@ -9,9 +9,9 @@ Source: the competition's tests_evaluation.py (2024), and the code it calls.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from roadgpt.geometry.curve import Array
 
 EPS_DEGREES = 0.3
 EPS_METRES = 0.2

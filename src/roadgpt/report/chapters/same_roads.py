@@ -10,6 +10,7 @@ import numpy as np
 
 from roadgpt.campaign.record import Record
 from roadgpt.errors import RoadGPTError, explained
+from roadgpt.geometry.curve import Array
 from roadgpt.plural import plural
 from roadgpt.report.canvas import save_all
 from roadgpt.report.chapters import Chapter
@@ -18,7 +19,7 @@ from roadgpt.report.page.maps import embedded_png
 from roadgpt.report.page.model import Block, Figure, Section, Table, TableCell
 from roadgpt.report.pair import SIZE
 from roadgpt.report.pair import pair as side_by_side
-from roadgpt.report.statistics import Array, friedman, holm, mcnemar, wilcoxon
+from roadgpt.report.statistics import friedman, holm, mcnemar, wilcoxon
 from roadgpt.road.world import oracle_in_words
 from roadgpt.run.atomic import refuse_links, remove_numbered
 
