@@ -21,9 +21,9 @@ import shapely
 from scipy.spatial import cKDTree
 
 from roadgpt.drive import simulate
+from roadgpt.geometry.boxes import corners
 from roadgpt.run import Setup, perform
 from roadgpt.traffic import Stage
-from roadgpt.traffic.actor import corners
 from roadgpt.traffic.following import RED
 from roadgpt.traffic.idm import IdmMover
 
@@ -96,7 +96,9 @@ def hits(states, sizes):
     if not len(pairs):
         return set()
     own = np.unique(pairs)
-    boxes = dict(zip(own, shapely.polygons([corners(states[n], sizes[n]) for n in there[own]]), strict=True))
+    rows = there[own]
+    outlines = corners(states[rows, :2], states[rows, 3], np.array([sizes[n] for n in rows]).reshape(-1, 3))
+    boxes = dict(zip(own, shapely.polygons(outlines), strict=True))
     meet = shapely.intersects([boxes[a] for a, _ in pairs], [boxes[b] for _, b in pairs])
     return {(int(there[a]), int(there[b])) for a, b in pairs[meet]}
 

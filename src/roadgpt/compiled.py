@@ -155,7 +155,7 @@ def announce() -> None:
 
 SOURCES = "-".join(
     digest(Path(__file__).parent / each, "*.py")
-    for each in ("drive", "ground", "scene", "traffic", "road/profile.py")
+    for each in ("drive", "geometry/boxes.py", "ground", "scene", "traffic", "road/profile.py")
     if COMPILES
 )
 """Stands for all that becomes part of machine code."""

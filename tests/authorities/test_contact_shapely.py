@@ -13,7 +13,7 @@ from roadgpt.drive import Drive
 from roadgpt.road import Road, World
 from roadgpt.traffic import STEP, Tracks
 from roadgpt.traffic.actor import SIZES
-from roadgpt.verdict.contact import contacts_of, middles
+from roadgpt.verdict.contact import contacts_of
 from roadgpt.verdict.measures import measure
 from staged import BOX, among, box_at, driven, straight, tracks
 
@@ -48,7 +48,7 @@ def boxes(x: Any, y: Any, heading: Any, length: float, width: float) -> NDArray[
 def distances(drive: Drive, at: NDArray[np.float64]) -> NDArray[np.float64]:
     """Between the car and each of the others, shape (times, actors)."""
     assert drive.others is not None
-    own = boxes(*(np.interp(at, drive["time"], each) for each in middles(drive).T), BOX.length, BOX.width)
+    own = boxes(*(np.interp(at, drive["time"], each) for each in drive.middles.T), BOX.length, BOX.width)
     states = drive.others.at(at)
     found = []
     for k, actor in enumerate(drive.others.actors):
@@ -74,7 +74,7 @@ def test_who_touches_the_car_and_when() -> None:
             first = at[np.argmax(apart[:, k] == 0)]
             assert first - FINE - 0.01 <= mine.at_time <= first + 1e-9
             states = drive.others.at(mine.at_time)[k]
-            x, y, heading = (np.interp(mine.at_time, drive["time"], each) for each in middles(drive).T)
+            x, y, heading = (np.interp(mine.at_time, drive["time"], each) for each in drive.middles.T)
             own = shapely.Polygon(box_at(x, y, heading, BOX.length, BOX.width))
             other = shapely.Polygon(box_at(states[0], states[1], states[3], *actor.size[:2]))
             assert own.distance(other) < 2e-3 or first == 0

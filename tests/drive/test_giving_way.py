@@ -17,11 +17,11 @@ from roadgpt.drive.giving_way import GivingWay
 from roadgpt.drive.view import Other
 from roadgpt.network import Route, is_route
 from roadgpt.network.lanes import lanes_of
+from roadgpt.network.line import driven_line
 from roadgpt.network.network import Leg
 from roadgpt.road import Limits, World
 from roadgpt.run import Setup, perform
 from roadgpt.traffic import Tracks
-from roadgpt.traffic.way import Way
 from roadgpt.verdict import judge
 from staged import Motion, straight
 from staged import tracks as level
@@ -52,7 +52,7 @@ def through(route: Route, world: World, turn: str) -> tuple[Leg, ...]:
 def motion(route: Route, world: World, legs: tuple[Leg, ...], place: Any) -> Motion:
     """Along lanes; ``place`` is of times to metres from the start of the lane through the junction."""
     road = Route.along(route.network, legs)
-    way = Way.along(road, world)
+    way = driven_line(road, world)
     begins = float(np.interp(road.starts[1], way.road_stations, way.stations))
 
     def moves(time: Any) -> Any:

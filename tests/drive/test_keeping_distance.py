@@ -14,11 +14,11 @@ from roadgpt import plugins
 from roadgpt.drive import Command, Drive, View, simulate
 from roadgpt.drive.keeping_distance import KeepingDistance
 from roadgpt.drive.path_ahead import look_ahead
+from roadgpt.geometry.boxes import corners
 from roadgpt.network import is_route
 from roadgpt.road import Limits, Road, World
 from roadgpt.run import Run, Setup, perform
 from roadgpt.traffic import SIZES, Tracks
-from roadgpt.traffic.actor import corners
 from roadgpt.traffic.lights import Lights
 from roadgpt.verdict import judge
 from staged import straight, tracks
@@ -92,7 +92,7 @@ def test_the_car_stops_behind_who_stands_in_its_path(
     others = tracks(1.0, other=(kind, straight(200, y, heading, 0)))
     drive = simulate(ROAD, WORLD, driver, replay=others)
     assert drive.ended == "stuck"
-    box = shapely.Polygon(corners(others.states[0, 0], SIZES[kind]))
+    box = shapely.Polygon(corners(others.states[0, 0, :2], others.states[0, 0, 3], np.array(SIZES[kind])))
     strip = shapely.box(0, LANE - 0.93, 900, LANE + 0.93)
     assert 1.0 < box.intersection(strip).bounds[0] - drive["x"][-1] - FRONT < 4.0
     assert drive["speed"][-500:].max() < 0.02  # it does not creep

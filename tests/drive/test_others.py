@@ -15,10 +15,10 @@ from roadgpt.drive import Command, Drive, View, simulate
 from roadgpt.drive.company import in_sight, look_around
 from roadgpt.drive.drive_monitor import DriveMonitor
 from roadgpt.errors import UsageError
+from roadgpt.geometry.boxes import corners
 from roadgpt.ground.sight import OPEN
 from roadgpt.road import Limits, Road, World
 from roadgpt.traffic import SIZES, Actor, Tracks
-from roadgpt.traffic.actor import corners
 
 LIMIT = 36 / 3.6
 WORLD = World(limits=Limits(speed_limit=LIMIT))
@@ -66,11 +66,11 @@ def test_boxes_touch_where_shapely_says_so_and_the_nearest_come_first() -> None:
         car = np.array([1.0, -2.0, 0.0, rng.uniform(-9, 9), 4.7, 1.86])
         looks, order = np.array([(*SIZES[kind], 1, 200) for kind in kinds], float), np.zeros(n, np.int64)
         count, touches = look_around(states, looks, car, order, np.zeros((n, 7)))
-        box = shapely.Polygon(
-            corners(np.array([*car[:4], 0.0]), SIZES["car"]._replace(length=4.7, width=1.86))
-        )
+        box = shapely.Polygon(corners(np.array(car[:2]), car[3], np.array([4.7, 1.86])))
         level = [k for k in range(n) if states[k, 2] == 0]
-        others = [shapely.Polygon(corners(states[k], SIZES[kinds[k]])) for k in level]
+        others = [
+            shapely.Polygon(corners(states[k][:2], states[k][3], np.array(SIZES[kinds[k]]))) for k in level
+        ]
         assert touches == any(box.intersects(other) for other in others)
         far = np.hypot(*(states[:, :2] - car[:2]).T)
         assert order[:count].tolist() == [k for k in np.argsort(far) if far[k] <= 200]
@@ -100,7 +100,7 @@ def test_the_car_rolls_brakes_from_the_first_contact_on_and_stops_being_driven_3
         touching += [
             time
             for state, actor in zip(states, others.actors, strict=True)
-            if box.intersects(shapely.Polygon(corners(state, actor.size)))
+            if box.intersects(shapely.Polygon(corners(state[:2], state[3], np.array(actor.size))))
         ]
     assert drive.duration == pytest.approx(touching[0] + 3.0, abs=1e-6)
     later = drive["time"] > touching[0] + 0.01
@@ -286,7 +286,7 @@ def seen_by_samples(eye: np.ndarray, boxes: list[np.ndarray], k: int, spare: flo
     which are ``spare`` metres larger on all sides; tried at many points of the line."""
     for point in [
         boxes[k][:2],
-        *corners(boxes[k], SIZES["car"]._replace(length=boxes[k][5], width=boxes[k][6])),
+        *corners(boxes[k][:2], boxes[k][3], boxes[k][5:7]),
     ]:
         share = np.linspace(0, 1, 4001)[:, None]
         line = eye + share * (np.array([*point, boxes[k][2] + boxes[k][7]]) - eye)

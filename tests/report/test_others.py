@@ -7,13 +7,14 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
+from roadgpt.geometry.boxes import corners
 from roadgpt.report import birds_eye
 from roadgpt.report.canvas import encoded
 from roadgpt.report.others import COLOURS, _corners_at, moment_of, step_at
 from roadgpt.report.view import _closest
 from roadgpt.road import Road, World
 from roadgpt.run import Request, Run, Setup
-from roadgpt.traffic.actor import STEP, corners
+from roadgpt.traffic.actor import STEP
 from roadgpt.verdict import judge
 from staged import among, driven, straight, tracks
 
@@ -63,9 +64,9 @@ def test_everybody_is_drawn_where_he_was_at_the_contact(crash: Run) -> None:
     main, inset = boxes(figure), boxes(figure, 1)
     for state, actor in zip(states, actors, strict=True):
         if actor.kind != "adult":  # who is drawn larger
-            assert is_drawn(corners(state, actor.size), main)
-    assert is_drawn(corners(states[0], actors[0].size), inset)
-    assert not is_drawn(corners(states[1], actors[1].size), inset)
+            assert is_drawn(corners(state[:2], state[3], np.array(actor.size)), main)
+    assert is_drawn(corners(states[0, :2], states[0, 3], np.array(actors[0].size)), inset)
+    assert not is_drawn(corners(states[1, :2], states[1, 3], np.array(actors[1].size)), inset)
     outlines = [patch.get_xy()[:-1] for patch in figure.axes[0].patches if isinstance(patch, Polygon)]
     round_ones = [each for each in outlines if len(each) > 8 and np.ptp(each, axis=0).max() < 15]
     assert [each.mean(axis=0) for each in round_ones] == [pytest.approx(states[2][:2], abs=0.01)]

@@ -7,6 +7,7 @@ import shapely
 from roadgpt.brief import read
 from roadgpt.brief.scene_fit import fitted
 from roadgpt.errors import BriefError
+from roadgpt.network.line import driven_line
 from roadgpt.road import World
 from roadgpt.road.road import START
 from roadgpt.run import Setup, perform
@@ -15,7 +16,6 @@ from roadgpt.traffic.following import GREEN, RED
 from roadgpt.traffic.lights import lights_of
 from roadgpt.traffic.rehearsal import rehearsed
 from roadgpt.traffic.traffic import begin
-from roadgpt.traffic.way import Way
 
 SETUP = Setup(reader="plan", drives=False)
 
@@ -81,7 +81,7 @@ def rehearsal(plan: str) -> tuple[float, float]:
     traffic = rehearsed(run.road, run.world, run.seed)
     assert traffic is not None
     other = traffic.tracks().states[:, 0, :2]
-    way, v = Way.along(run.road, run.world), run.world.first_speed
+    way, v = driven_line(run.road, run.world), run.world.first_speed
     s = min(START, run.road.length / 2) + v * STEP * np.arange(len(other))
     car = np.array([way.pose(way.from_road(each))[:2] for each in s])
     there = ~np.isnan(other[:, 0])

@@ -9,15 +9,16 @@ import shapely
 
 from roadgpt.brief.plan import read_scene
 from roadgpt.errors import UsageError
+from roadgpt.geometry.boxes import corners
 from roadgpt.network import network_of
 from roadgpt.network.lanes import lanes_of
+from roadgpt.network.line import driven_line
 from roadgpt.network.markings import strokes
 from roadgpt.run import Setup, perform
 from roadgpt.traffic import begin
-from roadgpt.traffic.actor import SIZES, corners
+from roadgpt.traffic.actor import SIZES
 from roadgpt.traffic.lights import GREEN, RED
 from roadgpt.traffic.places import offset_of, parked_rows
-from roadgpt.traffic.way import Way
 from roadgpt.traffic.ways import way_of
 
 CROSSROADS = "straight 150 // crossroads straight none angle=90 // straight 150"
@@ -89,7 +90,7 @@ def directions(plan, points):
 def test_places_beside_the_car_are_in_lanes_of_the_right_direction_or_in_none(plan):
     road, world, lanes = made(plan)
     paved = shapely.union_all([lane.area for lane in lanes])
-    path = Way.along(road, world)
+    path = driven_line(road, world)
     count = 0
     for s in np.linspace(5.0, road.length - 5.0, 9):
         x, y, z, heading = (float(np.interp(s, path.road_stations, column)) for column in path.points.T)
@@ -107,7 +108,7 @@ def test_places_beside_the_car_are_in_lanes_of_the_right_direction_or_in_none(pl
                 if side and where != "oncoming":
                     assert (t > 0) == (side == "left")
                 here = directions(plan, spot)[0]
-                box = shapely.Polygon(corners(np.array([*spot[0], 0.0]), SIZES["car"]))
+                box = shapely.Polygon(corners(spot[0, :2], spot[0, 3], np.array(SIZES["car"])))
                 if where == "oncoming":
                     assert here
                     assert all(off > math.radians(170) for _, off in here)
@@ -128,7 +129,7 @@ def test_ways_follow_lanes_and_meet_the_tested_car_where_they_say(plan, text):
     if found is None:
         return
     road, world, _ = made(plan)
-    path = Way.along(road, world)
+    path = driven_line(road, world)
     points = found.points
     steps = np.diff(points[:, :2], axis=0)
     assert np.hypot(*steps.T).max() < 0.8
@@ -261,7 +262,7 @@ def test_rows_of_cars_stand_beside_the_lanes_and_leave_junctions_and_ways_free()
     again, others = (parked_rows(scene, road, world, seed, [walker.points]) for seed in (1, 2))
     assert [(kind, *state) for kind, state in rows] == [(kind, *state) for kind, state in again]
     assert len(rows) != len(others) or any((a[1] != b[1]).any() for a, b in zip(rows, others, strict=True))
-    boxes = [shapely.Polygon(corners(state, SIZES[kind])) for kind, state in rows]
+    boxes = [shapely.Polygon(corners(state[:2], state[3], np.array(SIZES[kind]))) for kind, state in rows]
     paved = shapely.union_all([lane.area for lane in lanes])
     inside = [lane.area for lane in lanes if lane.member.junction is not None]
     line = shapely.LineString(walker.points[:, :2])

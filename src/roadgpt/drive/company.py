@@ -13,13 +13,13 @@ from roadgpt.brief.visibility import visual_range
 from roadgpt.compiled import bound, compiled, inlined
 from roadgpt.drive.drive import COLUMNS, Box, FloatArray
 from roadgpt.drive.view import LightAhead, Other, Others
+from roadgpt.geometry.boxes import part_inside, touch
 from roadgpt.ground.sight import Horizon, is_behind_land
 from roadgpt.language.table import VEHICLES
 from roadgpt.network.landscape import horizon_around
 from roadgpt.network.lanes import HEADROOM
 from roadgpt.traffic import STEP, Actor, TestedCar, Traffic
 from roadgpt.traffic.actor import bodies
-from roadgpt.traffic.boxes import part_inside, touch
 
 if TYPE_CHECKING:
     from roadgpt.drive.drive_monitor import DriveMonitor
@@ -74,10 +74,8 @@ def _hides(
     states: FloatArray, sizes: FloatArray, m: int, eye: FloatArray, x: float, y: float, z: float
 ) -> bool:
     """Returns whether box ``m`` lies between the eye and a point."""
-    c, s = math.cos(states[m, 3]), math.sin(states[m, 3])
-    dx, dy, there_x, there_y = eye[0] - states[m, 0], eye[1] - states[m, 1], x - eye[0], y - eye[1]
     low, high = part_inside(
-        dx * c + dy * s, dy * c - dx * s, there_x * c + there_y * s, there_y * c - there_x * s,
+        eye[0] - states[m, 0], eye[1] - states[m, 1], x - eye[0], y - eye[1], states[m, 3],
         sizes[m, 0], sizes[m, 1], 0.0, 1.0,
     )  # fmt: skip
     one, two = eye[2] + low * (z - eye[2]), eye[2] + high * (z - eye[2])

@@ -195,19 +195,22 @@ class Drive:
         names, whole = dict.fromkeys([self.driver, *(each.by for each in self.handovers)]), way.sum() or 1.0
         return {name: float(way[by == name].sum() / whole) for name in names}
 
+    @property
+    def middles(self) -> FloatArray:
+        """The middle of the car's box (x, y) in plan and its heading at every step, shape (n, 3)."""
+        heading, ahead = np.unwrap(self["heading"]), self.car.ahead
+        x, y = self["x"] + ahead * np.cos(heading), self["y"] + ahead * np.sin(heading)
+        return np.stack([x, y, heading], axis=-1)
+
     def corners(self, step: int) -> FloatArray:
         """Returns the four corners of the car's box in plan at one step, shape (4, 2), counter-clockwise.
 
         The corners are for pictures and assume level ground; the column ``outside`` takes pitch and roll into
         account."""
-        front = self.car.ahead + self.car.length / 2
-        rear = front - self.car.length
-        half = self.car.width / 2
-        outline = np.array([[rear, -half], [front, -half], [front, half], [rear, half]])
-        c, s = np.cos(self["heading"][step]), np.sin(self["heading"][step])
-        place = np.array([self["x"][step], self["y"][step]])
-        turned: FloatArray = outline @ np.array([[c, s], [-s, c]]) + place
-        return turned
+        from roadgpt.geometry.boxes import corners  # only pictures load it
+
+        *middle, heading = self.middles[step]
+        return corners(np.array(middle), heading, np.array([self.car.length, self.car.width]))
 
     def to_frame(self) -> "DataFrame":
         """Returns the columns as a pandas DataFrame with a row for each step of 0.02 s; ``COLUMNS`` says the

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from roadgpt.drive.outlook import limits_of
-from roadgpt.drive.view import Command, View
+from roadgpt.drive.view import View
 from roadgpt.geometry.curve import LEAST_STRETCH
 from roadgpt.road.speed_profile import GRAVITY, PathGeometry
 
@@ -45,8 +45,9 @@ class DrivingLine(PathGeometry):
     lists go on for 60 m beyond the end of the road."""
 
     offset: list[float]  # offset in metres to the left of the centre line
-    x: list[float]  # positions along x in metres
-    y: list[float]  # positions along y in metres
+    x: list[float]  # positions in metres
+    y: list[float]
+    z: list[float]  # beyond the end of the road, that of its end
     heading: list[float]  # heading of the line in radians, continuous (not wrapped)
 
     def place(self, s: float) -> tuple[int, float]:
@@ -93,27 +94,13 @@ def line_along(road: "Road", offset: ArrayLike) -> DrivingLine:
     stretch = np.hypot(along, turning)
     heading = np.unwrap(road.heading(s)) + np.arctan2(turning, along)
     curvature = np.gradient(heading, step) / stretch
-    xy = road.at(s, t)[:, :2]
-    more = math.ceil(BEYOND / step)
-    far = step * np.arange(1, more + 1)[:, None] * [[np.cos(heading[-1]), np.sin(heading[-1])]]
-    xy = np.concatenate([xy, xy[-1] + far])
-    return DrivingLine(
-        step=step,
-        stretch=_longer(stretch, more, 1.0),
-        curvature=_longer(curvature, more, 0.0),
-        grade=_longer(road.grade(s), more, float(road.grade(s[-1]))),
-        crest=_longer(road.vertical_curvature(s), more, 0.0),
-        superelevation=_longer(angle, more, float(angle[-1])),
-        offset=_longer(t, more, t[-1]),
-        x=xy[:, 0].tolist(),
-        y=xy[:, 1].tolist(),
-        heading=_longer(heading, more, heading[-1]),
-    )
-
-
-def _longer(values: FloatArray, more: int, last: float) -> list[float]:
-    found: list[float] = values.tolist()
-    return found + [float(last)] * more
+    grade, (x, y, z) = road.grade(s), road.at(s, t).T
+    inside = stretch, curvature, grade, road.vertical_curvature(s), angle, t, x, y, z, heading
+    far = step * np.arange(1, math.ceil(BEYOND / step) + 1)
+    x_far, y_far = x[-1] + far * np.cos(heading[-1]), y[-1] + far * np.sin(heading[-1])
+    beyond = 1.0, 0.0, grade[-1], 0.0, angle[-1], t[-1], x_far, y_far, z[-1], heading[-1]
+    columns = (np.r_[one, np.broadcast_to(two, far.shape)] for one, two in zip(inside, beyond, strict=True))
+    return DrivingLine(step, *(column.tolist() for column in columns))
 
 
 def pursuit_curvature(line: DrivingLine, view: View, ahead: float) -> float:
@@ -166,10 +153,6 @@ BEFORE_LINE = 1.0  # m, from the front of the stopped car to the stop line
 CREEP = 1.0  # m/s, planned speed at the stopping place: the lowest that is planned
 BEHIND = 3  # stations from the stopping place on that keep this speed: drivers look up their plan ahead
 EASY_BRAKING = 3.4  # m/s^2, with which most drivers brake easily: AASHTO Green Book, stopping distance
-HALTED = 0.05  # m/s, below which the car counts as standing; a verdict asks for less than 0.1
-REACH = 4.0  # m before the line, within which the car has to stand, as in CARLA's test of stop signs
-LEAST_BRAKE = 0.25  # brake pedal, 0 to 1
-NEAR, ROLL_UP = 10.0, 1.0  # m before the line, m/s^2: a car that stops too early there rolls on
 
 
 def turning_speed(curvature: float) -> float:
@@ -256,28 +239,3 @@ def kept_in_lane(
     planned = middle + smoothed(aside, float(s[1] - s[0]), BLEND)
     kept: FloatArray = offset + share_of_junction(road, s) * (planned - offset)
     return kept
-
-
-class StopSigns:
-    """Makes a driver stop at the stop signs of a route: the car stops once before each stop line."""
-
-    def __init__(self, road: "Road") -> None:
-        """Prepares the stop lines of a route; on a road without stop signs, no command is changed."""
-        self._lines = [way.stop_line for way in road.passages if way.stop_line is not None]
-
-    def obeyed(self, view: View, command: Command) -> Command:
-        """Returns the command, changed near a stop line: the car brakes to a stop before the line, and rolls
-        on slowly if it has stopped too early."""
-        if not self._lines:
-            return command
-        left = self._lines[0] - view.s - FRONT
-        if left > BEFORE_LINE + view.speed * view.dt:
-            if left < NEAR and view.speed < CREEP / 2:  # it stopped too early, where its plan still brakes
-                grade = float(view.road.grade(view.s))
-                return Command(command.steer, *pedals_for(ROLL_UP, grade, view.speed))
-            return command
-        if (view.speed < HALTED and left < REACH) or left < -REACH:
-            del self._lines[0]
-            return command
-        needed = view.speed**2 / 2 / max(left, BEFORE_LINE / 2)
-        return Command(command.steer, 0.0, min(max(needed / FULL_BRAKE, LEAST_BRAKE), 1.0))

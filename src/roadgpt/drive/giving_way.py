@@ -34,6 +34,7 @@ from roadgpt.traffic.following import (
     STANDING,
     TURN,
     idm,
+    is_awaited,
     time_over,
 )  # fmt: skip
 
@@ -189,14 +190,13 @@ def _is_awaited(ways: FloatArray, others: FloatArray, car: FloatArray) -> bool:
             if math.cos(other[2] - way[2]) < SAME or way[4] - ahead + half < 0.0:
                 continue
             if left > 0.0:
-                is_far = left - way[3] + way[6] > speed * speed / (2.0 * EASY) + speed + 15.0
-                if (speed < STANDING and waited > TURN) or (waited > PATIENCE and is_far):
-                    continue
+                spare = left - way[3] + way[6] - speed * speed / (2.0 * EASY) - speed - 15.0
                 through = max(way[5] - front + LENGTH, 0.0)
                 leaves = time_over(v, through, top, PULL)
                 if v > top:  # it slows down before the junction
                     leaves = 2.0 * before / (v + top) + max(through - before, 0.0) / top
-                if time_over(speed, left, limit, PULL) > leaves + margin:
+                arrives = time_over(speed, left, limit, PULL)
+                if not is_awaited(speed, spare, arrives, leaves + margin, waited, TURN):
                     continue
             return True
     return False

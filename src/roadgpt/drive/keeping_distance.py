@@ -4,7 +4,7 @@ A driver follows whoever is in its path by the Intelligent Driver Model, as the 
 (``roadgpt.traffic.following``). Its path is the strip that the car covers along the planned line: others on
 it count, also who only reaches into it, who crosses it or moves into it, and who comes towards the car. Red
 lights count like somebody who stands behind their stop line, and so do the lines where it gives way
-(``roadgpt.drive.giving_way``)."""
+(``roadgpt.drive.giving_way``). At stop signs it stops once."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -12,11 +12,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roadgpt.compiled import bound
-from roadgpt.drive.driving_line import BEFORE_LINE, FRONT, LEAST_BRAKE, DrivingLine, FloatArray, pedals_for
+from roadgpt.drive.driving_line import (
+    BEFORE_LINE,
+    CREEP,
+    FRONT,
+    FULL_BRAKE,
+    DrivingLine,
+    FloatArray,
+    pedals_for,
+)
 from roadgpt.drive.view import Command, Others, View
 
 if TYPE_CHECKING:
     from roadgpt.drive.giving_way import GivingWay
+    from roadgpt.road import Road
 
 TIME_GAP = 1.5  # s, to the one ahead: the usual setting; ISO 15622 asks for at least 0.8 s
 PULL, BRAKE = 1.5, 2.0  # m/s^2, IDM's a and b, as the cars of the traffic have
@@ -24,14 +33,22 @@ FOLLOWS = np.array([TIME_GAP, PULL, BRAKE])
 HARDEST = 9.0  # m/s^2
 FIRM = 3.0  # m/s^2, with which a car stops at a yellow light; else it drives on
 ROLLS = 0.3  # m/s, below which a car that need not go on is held by its brake
+HALTED = 0.05  # m/s, below which the car counts as standing; a verdict asks for less than 0.1
+REACH = 4.0  # m before a stop line, within which the car has to stand, as in CARLA's test of stop signs
+LEAST_BRAKE = 0.25  # brake pedal, 0 to 1
+NEAR, ROLL_UP = 10.0, 1.0  # m before the line, m/s^2: a car that stops too early there rolls on
 GOES_ON = 0.1  # m/s^2, from which on a standing car goes on: 7 cm beyond the least distance
 
 
 class KeepingDistance:
     """Keeps a driver's distance along its planned line."""
 
-    def __init__(self, line: DrivingLine) -> None:
+    def __init__(self, line: DrivingLine, road: "Road | None" = None) -> None:
+        """Prepares for a line, and the stop lines of a route if it is to stop at them."""
         self._line = line
+        self._stop_lines = [
+            each.stop_line for each in (road.passages if road else ()) if each.stop_line is not None
+        ]
         self._along = self._path = np.empty(0)
         self._stops_at: set[float] = set()
         """The lights at which the car stops: the stations of their lines, to the millimetre."""
@@ -83,9 +100,25 @@ class KeepingDistance:
                 found.append(distance)
         return found
 
+    def _stopping(self, view: View, command: Command) -> Command:
+        """Returns the command, changed near a stop line: the car brakes to a stop before the line, once, and
+        rolls on slowly if it has stopped too early."""
+        left = self._stop_lines[0] - view.s - FRONT
+        if left > BEFORE_LINE + view.speed * view.dt:
+            if left < NEAR and view.speed < CREEP / 2:  # it stopped too early, where its plan still brakes
+                grade = float(view.road.grade(view.s))
+                return Command(command.steer, *pedals_for(ROLL_UP, grade, view.speed))
+            return command
+        if (view.speed < HALTED and left < REACH) or left < -REACH:
+            del self._stop_lines[0]
+            return command
+        needed = view.speed**2 / 2 / max(left, BEFORE_LINE / 2)
+        return Command(command.steer, 0.0, min(max(needed / FULL_BRAKE, LEAST_BRAKE), 1.0))
+
     def kept(self, view: View, command: Command) -> Command:
-        """Returns the command, with less throttle or more brake for red lights, others in the path, and those
-        to whom the driver gives way."""
+        """Returns the command, with less throttle or more brake for stop signs, red lights, others in the
+        path, and those to whom the driver gives way."""
+        command = self._stopping(view, command) if self._stop_lines else command
         if not (view.others or view.lights):
             return command
         lines, least = list[float](), np.inf

@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 from roadgpt.compiled import compiled, inlined
+from roadgpt.geometry.boxes import part_inside
 from roadgpt.traffic.actor import FloatArray
-from roadgpt.traffic.boxes import part_inside
 from roadgpt.traffic.following import BESIDE_ME, HORIZON, idm
 
 HALF_WIDTH = 0.93  # m, of RoadGPT's saloon
@@ -26,13 +26,10 @@ X, Y, HEADING, SPEED, LENGTH, WIDTH, IS_VEHICLE = range(7)
 def _is_across(x: float, y: float, heading: float, half: float, other: FloatArray) -> bool:
     """Returns whether a box overlaps the line of ``half`` metres to both sides of a point of the path. Seen
     along the path, the box is longer by half a STEP at both ends."""
-    c, s = math.cos(other[HEADING]), math.sin(other[HEADING])
     turn = heading - other[HEADING]
-    dx, dy = x - other[X], y - other[Y]
-    ahead, aside = abs(math.cos(turn)), abs(math.sin(turn))
     low, high = part_inside(
-        dx * c + dy * s, dy * c - dx * s, -math.sin(turn), math.cos(turn),
-        other[LENGTH] + STEP * ahead, other[WIDTH] + STEP * aside, -half, half,
+        x - other[X], y - other[Y], -math.sin(heading), math.cos(heading), other[HEADING],
+        other[LENGTH] + STEP * abs(math.cos(turn)), other[WIDTH] + STEP * abs(math.sin(turn)), -half, half,
     )  # fmt: skip
     return low <= high
 

@@ -10,6 +10,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.patches import Polygon
 from matplotlib.patheffects import withStroke
 
+from roadgpt.geometry.boxes import OUTLINE, corners, turned
 from roadgpt.geometry.curve import Array
 from roadgpt.language.names import ActorKind
 from roadgpt.language.table import ROAD_USERS, VEHICLES
@@ -17,9 +18,8 @@ from roadgpt.report.canvas import BLUE, GREEN, HALO, INK, POINTS, SOFT, VERMILLI
 from roadgpt.report.plan_view import Frame, draw_road
 from roadgpt.run import Run
 from roadgpt.traffic import Tracks
-from roadgpt.traffic.actor import HEADING, SPEED, STILL, X, Y, corners
+from roadgpt.traffic.actor import HEADING, SPEED, STILL, X, Y
 from roadgpt.verdict import Incident
-from roadgpt.verdict.contact import turned
 from roadgpt.verdict.verdict import IncidentKind
 
 NAVY, BROWN, PINK = "#1f3763", "#7a4b16", "#c2408f"
@@ -27,7 +27,7 @@ COLOURS = {
     "car, van": BLUE, "truck, bus": NAVY, "two wheels": GREEN, "person": PINK, "animal": BROWN, "thing": SOFT,
 }  # fmt: skip
 """The colours by what the key of a picture calls those that look alike."""
-BOX = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+BOX = 2 * OUTLINE
 TURN = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
 SHAPES: dict[str, tuple[str, Any]] = {
     "two wheels": ("d", ((1, 0), (0, 1), (-1, 0), (0, -1))),
@@ -94,11 +94,11 @@ def draw_others(axes: Axes, run: Run, per_inch: float, time: float) -> None:
             shades = [(*to_rgb(colour), alpha) for alpha in np.linspace(0.05, 0.75, len(pieces))]
             axes.add_collection(LineCollection(list(pieces), colors=shades, linewidths=2.0, zorder=7.6))
         if not np.isnan(state[X]):
-            half = max(1.0, least / max(actor.size[:2])) * np.array(actor.size[:2]) / 2
-            outline = np.array(SHAPES.get(name, ("s", BOX))[1])
-            axes.add_patch(_box(turned(outline * half, state[HEADING]) + state[[X, Y]], colour))
+            size = max(1.0, least / max(actor.size[:2])) * np.array(actor.size[:2])
+            outline = np.array(SHAPES.get(name, ("s", BOX))[1]) * size / 2
+            axes.add_patch(_box(turned(outline, state[HEADING]) + state[[X, Y]], colour))
             if _brakes(others, number, time):
-                _lit(axes, turned(np.array(BOX) * half, state[HEADING]) + state[[X, Y]])
+                _lit(axes, corners(state[[X, Y]], state[HEADING], size))
     step = step_at(run, time)
     own = run.drive.corners(step)
     middle = own.mean(axis=0)
@@ -151,7 +151,7 @@ def draw_contact(axes: Axes, run: Run, contact: Incident) -> None:
     number = next(n for n, actor in enumerate(others.actors) if actor.name == contact.other)
     state, actor = others.at(contact.at_time)[number], others.actors[number]
     own = _corners_at(run, contact.at_time)
-    boxes = (own, corners(state, actor.size))
+    boxes = (own, corners(state[:2], state[HEADING], np.array(actor.size)))
     shown = np.concatenate(boxes)
     low, high = shown.min(axis=0) - ROOM, shown.max(axis=0) + ROOM
     wide, tall = (float(each) for each in inches_of(axes))

@@ -94,11 +94,3 @@ def bodies(actors: Sequence[Actor], states: FloatArray) -> "list[Body]":
 def rounded(states: FloatArray) -> FloatArray:
     """Returns states as Tracks hold them."""
     return np.asarray(np.rint(states * PER_UNIT) / PER_UNIT + 0.0)
-
-
-def corners(state: FloatArray, size: Size) -> FloatArray:
-    """Returns the corners of an actor's box in plan, shape (4, 2), counter-clockwise from the rear right."""
-    ahead, aside = size.length / 2, size.width / 2
-    outline = np.array([[-ahead, -aside], [ahead, -aside], [ahead, aside], [-ahead, aside]])
-    c, s = math.cos(state[HEADING]), math.sin(state[HEADING])
-    return np.asarray(outline @ np.array([[c, s], [-s, c]]) + state[[X, Y]])

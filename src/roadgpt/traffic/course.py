@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from roadgpt.traffic.way import GRIP, Way
+from roadgpt.network.line import GRIP, Line
 
 BEYOND = 50.0  # m off the road: behind a car that stands at its begin, or at its end with something to do
 AHEAD = (0.0, 1.0, 2.0, 3.0)  # s, at which bends count for a movement sideways
@@ -32,9 +32,9 @@ class Meeting(NamedTuple):
 class Course:
     """The place of somebody on a way."""
 
-    lane: Way
+    lane: Line
     """The lane of whom it meets."""
-    way: Way
+    way: Line
     length: float
     """That of its box."""
     forward: int

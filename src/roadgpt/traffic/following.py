@@ -23,10 +23,10 @@ from typing import NamedTuple
 import numpy as np
 
 from roadgpt.compiled import compiled, inlined
+from roadgpt.geometry.boxes import touch
+from roadgpt.network.line import LEAST_GRIP, SIDEWAYS, SLOWING
 from roadgpt.traffic.actor import STEP, FloatArray
-from roadgpt.traffic.boxes import touch
 from roadgpt.traffic.lane_map import ACROSS, CALM, PF, PG, PV, IntArray, LaneMap, across, place_on, touched
-from roadgpt.traffic.way import LEAST_GRIP, SIDEWAYS, SLOWING
 
 S, V, LENGTH, WIDTH, FACTOR, TOP, HEADWAY, PULLS, BRAKES, ASIDE, BEGAN, PROGRESS, WAIT, A_NEXT = range(14)
 PULL, BRAKE, GRIP, LASTS, DENIED = range(14, 19)
@@ -265,6 +265,15 @@ def time_over(v: float, way: float, top: float, pull: float) -> float:
     return rise + (way - (v + top) / 2.0 * rise) / top
 
 
+@inlined
+def is_awaited(v: float, spare: float, arrives: float, leaves: float, waited: float, turn: float) -> bool:
+    """Returns whether one that gives way waits for another, which would arrive where their ways meet before
+    it leaves that place, both in seconds: not for who stands once it has waited for ``turn`` seconds, nor
+    after PATIENCE seconds for who can stop with ``spare`` metres left before its line."""
+    has_waited = (waited > PATIENCE and spare > 0.0) or (v < STANDING and waited > turn)
+    return not has_waited and arrives < leaves
+
+
 @compiled
 def _comes_before(crowd: Crowd, i: int, j: int, other: int, first: float, leaves: float) -> bool:
     """Returns whether vehicle ``i`` has to wait for ``j``, to whom it gives way: ``j`` comes to station
@@ -274,16 +283,13 @@ def _comes_before(crowd: Crowd, i: int, j: int, other: int, first: float, leaves
     if q < 0 or crowd.ways[j, q] != other or (before >= 0 and crowd.lights[before] == RED):
         return False
     line, v, waits = away - numbers[j, LENGTH] / 2.0, numbers[j, V], numbers[i, WAIT]
-    if j != TESTED and waits > PATIENCE and (before < 0 or line > v * v / (2.0 * _easy(numbers[j])) + 5.0):
-        return False
-    turn = TURN if j != TESTED else 2.0 * TURN  # so that not both begin to move at once
-    if v < STANDING and waits > turn:  # if it has waited longer, it was asked before, and cannot go
-        return False
-    arrives = (line + first) / max(v, 3.0)
     if j == TESTED:
         sprint = min(SPRINT, numbers[j, GRIP])
         arrives = time_over(v, line + first, crowd.lanes.limit[other], sprint)
-    return bool(arrives < leaves + MARGIN)
+        # so that not both begin to move at once; if it has waited longer, it was asked before, and cannot go
+        return is_awaited(v, -math.inf, arrives, leaves + MARGIN, waits, 2.0 * TURN)
+    spare = line - v * v / (2.0 * _easy(numbers[j])) - 5.0 if before >= 0 else math.inf
+    return is_awaited(v, spare, (line + first) / max(v, 3.0), leaves + MARGIN, waits, TURN)
 
 
 @compiled

@@ -17,12 +17,12 @@ from roadgpt.language.names import ActorKind, Flow
 from roadgpt.language.table import FLOWS, ROAD_USERS
 from roadgpt.network import legs_of, network_of
 from roadgpt.network.lanes import Lanes, lanes_of
+from roadgpt.network.line import LEAST_GRIP, SLOWING
 from roadgpt.network.network import Leg, Network, RoadEnd
 from roadgpt.traffic import following as f
 from roadgpt.traffic.actor import SIZES, SPEED, STEP, Actor, FloatArray
 from roadgpt.traffic.lane_map import PER_CHANGE, PF, PG, LaneMap, lane_map, on_friction, place_on
 from roadgpt.traffic.lights import Lights
-from roadgpt.traffic.way import LEAST_GRIP, SLOWING
 
 if TYPE_CHECKING:
     from roadgpt.road import Road

@@ -5,12 +5,12 @@ from collections.abc import Mapping
 
 from roadgpt.language.names import ActorKind
 from roadgpt.language.table import ROAD_USERS
+from roadgpt.network.line import LEAST_GRIP
 from roadgpt.traffic.actor import STEP, STILL
 from roadgpt.traffic.course import Course, Met
 from roadgpt.traffic.following import HARDEST, JAM, idm
 from roadgpt.traffic.lateral import Lateral
 from roadgpt.traffic.maneuver import CHANGE, FAST, starting
-from roadgpt.traffic.way import LEAST_GRIP
 
 PULL = ROAD_USERS["car"].pull or 0.0
 FIRM = 7.0  # m/s^2, the hardest with which one brakes behind others in its lane

@@ -3,6 +3,7 @@
 import math
 
 from roadgpt.brief.scene import ACCELERATES, ON_ITS_WAY
+from roadgpt.network.line import GRIP
 from roadgpt.road.speed_profile import GRAVITY
 from roadgpt.traffic.actor import STEP, STILL
 from roadgpt.traffic.course import Met
@@ -10,7 +11,6 @@ from roadgpt.traffic.following import AFTER_CONTACT
 from roadgpt.traffic.maneuver import FAST, LATERAL, Phase
 from roadgpt.traffic.placing import Placing
 from roadgpt.traffic.triggers import LAST
-from roadgpt.traffic.way import GRIP
 
 GOES = 2.0  # s before its own meeting, from which on it goes on also if the tested car waits for it
 CATCH_UP = 1.0  # s, in which most of the way that is missing before a meeting is made good

@@ -12,14 +12,15 @@ from roadgpt.brief.outline import USUALLY_WIDEST
 from roadgpt.brief.scene import Mark, Scene
 from roadgpt.check.measures import measure
 from roadgpt.errors import SceneError
+from roadgpt.geometry.boxes import corners
 from roadgpt.language.names import ActorKind, Side, Where
 from roadgpt.network import is_route, network_of
 from roadgpt.network.lanes import lanes_of
+from roadgpt.network.line import SPACING, Line
 from roadgpt.network.markings import CROSSWALK
 from roadgpt.plural import plural
-from roadgpt.traffic.actor import SIZES, FloatArray, corners
+from roadgpt.traffic.actor import HEADING, SIZES, FloatArray
 from roadgpt.traffic.lane_map import LEAST
-from roadgpt.traffic.way import SPACING, Way
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -92,7 +93,7 @@ def _lanes_beside(s: float, road: "Road", world: "World", width: float) -> dict[
     return {name: sorted(offsets, key=abs) for name, offsets in found.items()}
 
 
-def stretch_of(mark: Mark, road: "Road", path: Way) -> tuple[float, float]:
+def stretch_of(mark: Mark, road: "Road", path: Line) -> tuple[float, float]:
     """Returns the first and the last station, along the tested car's lane, of a part of its route."""
     spans = passages = [(each.start, each.end) for each in road.passages]
     if mark.of == "turn":
@@ -139,7 +140,7 @@ def parked_rows(
             t = float(middle(s)) + offset_of("parked", side, s, road, world, SIZES[kind].width)
             turned = side != outer and bool(_lanes_beside(s, road, world, LEAST)["oncoming"])
             state = np.array([*road.at(s, t), float(road.heading(s)) + math.pi * turned, 0.0])
-            box = corners(state, SIZES[kind])
+            box = corners(state[:2], state[HEADING], np.array(SIZES[kind]))
             is_in_lane = any(each.lane.kind == "driving" for places in lanes.places(box) for each in places)
             if not is_in_lane and not any(line.intersects(shapely.Polygon(box)) for line in lines):
                 found.append((kind, state))

@@ -13,10 +13,11 @@ import numpy as np
 
 from roadgpt.brief.scene import HEAD_ON, LEAVES, ON_ITS_WAY, Action, Role
 from roadgpt.errors import SceneError
+from roadgpt.geometry.boxes import touch
 from roadgpt.language.table import ALONG, MANEUVERS, MOVING, NUMBERS, PLACES, USUAL_SPEEDS, one_of
+from roadgpt.network.line import SPACING, Line
 from roadgpt.road.road import GOAL
 from roadgpt.traffic.actor import SIZES, STILL
-from roadgpt.traffic.boxes import touch
 from roadgpt.traffic.course import Course, Meeting, Met
 from roadgpt.traffic.following import time_over
 from roadgpt.traffic.lateral import SHARPEST, Lateral, Offsets
@@ -25,7 +26,6 @@ from roadgpt.traffic.maneuver import LATERAL, ROLL, TURNING, Maneuver, drawn
 from roadgpt.traffic.places import stretch_of
 from roadgpt.traffic.traffic import Stage
 from roadgpt.traffic.triggers import LAST, Triggers
-from roadgpt.traffic.way import SPACING, Way
 from roadgpt.traffic.ways import way_of
 
 SETTLED = 1.0  # s, as ROLL for who is in the tested car's lane at a distance that the scene says
@@ -48,7 +48,7 @@ class Placing:
     """Somebody of a scene where it is at first, in metres and seconds, with the numbers that were drawn."""
 
     def __init__(
-        self, stage: Stage, lane: Way, role: Role, met: Met, rng: np.random.Generator,
+        self, stage: Stage, lane: Line, role: Role, met: Met, rng: np.random.Generator,
         alike: "Sequence[Placing]", events: dict[tuple[str, ...], float],
     ) -> None:  # fmt: skip
         """Draws its numbers, and places it as seen from the tested car, whose lane is ``lane``, behind those
@@ -270,7 +270,7 @@ class Placing:
             return min(TURNING, limit)
         return limit if role.where == "oncoming" else min(self.met.v, limit) or limit
 
-    def _own_way(self) -> Way:
+    def _own_way(self) -> Line:
         """Returns the way of somebody who does not stay along the tested car's lane: to where the tested car
         is when it has rolled for long enough, or to the place that the scene says."""
         lane, (road, world, *_), at = self.course.lane, self.stage, self.role.at

@@ -5,11 +5,11 @@ and the same seed gives the same result."""
 from itertools import count
 from typing import TYPE_CHECKING
 
+from roadgpt.network.line import driven_line
 from roadgpt.road.road import GOAL, START
 from roadgpt.traffic import begin
 from roadgpt.traffic.actor import SIZES, STEP, Size, TestedCar
 from roadgpt.traffic.traffic import Traffic
-from roadgpt.traffic.way import Way
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -22,7 +22,7 @@ def rehearsed(
 ) -> Traffic | None:
     """Returns the others after the rehearsal, who tell what happened; None if there are none. The middle of
     the tested car's box, of a ``size``, is ``ahead`` metres before its centre of gravity."""
-    traffic, way, v = begin(road, world, seed), Way.along(road, world), world.first_speed
+    traffic, way, v = begin(road, world, seed), driven_line(road, world), world.first_speed
     if traffic is None:
         return None
     first = way.from_road(min(START, road.length / 2))

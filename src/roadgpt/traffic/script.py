@@ -7,17 +7,17 @@ from collections import Counter
 import numpy as np
 
 from roadgpt.brief.scene import HEAD_ON, LEAVES, MOST_MORE
+from roadgpt.geometry.boxes import corners, touch
 from roadgpt.language.table import MANEUVERS
+from roadgpt.network.line import SPACING, driven_line
 from roadgpt.road.road import START
-from roadgpt.traffic.actor import HEADING, SIZES, STILL, Actor, FloatArray, TestedCar, corners
-from roadgpt.traffic.boxes import touch
+from roadgpt.traffic.actor import HEADING, SIZES, STILL, Actor, FloatArray, TestedCar
 from roadgpt.traffic.course import Met
 from roadgpt.traffic.following import ALONG
 from roadgpt.traffic.performer import Performer
 from roadgpt.traffic.places import parked_rows
 from roadgpt.traffic.placing import BEHIND, INTO, ONCOMING, STANDS, Placing
 from roadgpt.traffic.traffic import LATE, NEVER, Stage
-from roadgpt.traffic.way import SPACING, Way
 
 UNCOVERED = 3.0  # s that who changes lanes has left before who stands behind it is reached
 IN_SIGHT = 150.0  # m ahead, in which somebody sees others in its lane
@@ -30,11 +30,12 @@ class Script:
     def __init__(self, stage: Stage) -> None:
         """Draws the numbers of the scene and places everybody as seen from where the tested car starts.
         Raises SceneError if something of the scene cannot be on this road."""
-        self._stage, self._way = stage, Way.along(stage.road, stage.world)
+        self._stage, self._way = stage, driven_line(stage.road, stage.world)
         first = self._way.from_road(min(START, stage.road.length / 2))
         self._performers = self._placed(Met(first, stage.world.first_speed, *SIZES["car"][:2]))
         free = [each.course.way.points for each in self._performers if each.course.way is not self._way]
-        free += [corners(np.array(at), each.size) for each in self._performers if (at := each.state())]
+        there = [(np.array(at), each.size) for each in self._performers if (at := each.state())]
+        free += [corners(state[:2], state[HEADING], np.array(size)) for state, size in there]
         rows = parked_rows(stage.world.scene, stage.road, stage.world, stage.seed, free)
         kinds = [*(each.role.kind for each in self._performers), *(kind for kind, _ in rows)]
         self.actors = [
@@ -142,15 +143,16 @@ class Script:
         own = (car.x, car.y, 0.0, car.heading, car.speed, car.length, car.width)
         rows = np.vstack([np.hstack([self._states(), self._sizes]), bodies, own])
         ways = {each.course.way for each in self._performers if each.longitudinal.v != 0}
-        seen = {way: way.boxes(rows) for way in ways}
+        seen = {way: way.boxes(rows[:, :5], rows[:, 5:]) for way in ways}
         for number, each in enumerate(self._performers):
             v, lateral, course = each.longitudinal.v, each.lateral, each.course
             each.longitudinal.ahead = None
             if v == 0:
                 continue
-            along, left, half, wide, speed, aside = seen[course.way]
+            boxes = seen[course.way]
+            left, (half, wide), (speed, aside) = boxes.t, boxes.reach, boxes.velocity.T
             ahead = math.copysign(course.forward, course.forward * v)
-            apart = ahead * (along - course.s)
+            apart = ahead * (boxes.along - course.s)
             gap = apart - half - each.size.length / 2
             gap[-1] -= INTO * abs(v) * (each.role.where != "behind")  # the headway with which it follows
             later = left + aside * np.maximum(gap, 0.0) / abs(v)

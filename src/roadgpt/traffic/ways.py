@@ -18,6 +18,7 @@ from roadgpt.language.table import MANEUVERS
 from roadgpt.network import Passage, Route, is_route
 from roadgpt.network.lane_along import LONGEST, SHARE
 from roadgpt.network.lanes import HEADROOM, STRAIGHT_AHEAD, Lanes, lanes_of
+from roadgpt.network.line import SPACING, Line, driven_line
 from roadgpt.network.markings import CROSSWALK
 from roadgpt.network.network import Leg
 from roadgpt.road.road import GOAL
@@ -25,7 +26,6 @@ from roadgpt.traffic.actor import SIZES, FloatArray
 from roadgpt.traffic.lane_map import LEAST
 from roadgpt.traffic.lights import Lights, comes_from_side
 from roadgpt.traffic.places import BESIDE, SIGN
-from roadgpt.traffic.way import SPACING, Way
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -48,7 +48,7 @@ TURNS: Mapping[What, tuple[float, float, tuple[bool, ...]]] = {
 lane."""
 
 
-def way_of(role: Role, near: float, road: "Road", world: "World", away: float | None = None) -> Way:
+def way_of(role: Role, near: float, road: "Road", world: "World", away: float | None = None) -> Line:
     """Returns the way of somebody who crosses the tested car's path, comes to it along other lanes, or turns
     off. ``meets`` is where, at station ``near`` of the tested car's road or later. Who crosses is ``away``
     metres from the path at first; None: beside the lanes. Raises SceneError if the road has no such place."""
@@ -62,7 +62,7 @@ def way_of(role: Role, near: float, road: "Road", world: "World", away: float | 
         at = mark.number - 1 if mark.number > 0 else len(passages) + mark.number
         passages = passages[at + (mark.word == "after") :][:1]
     if is_route(road):
-        for way in find(_Around(role, road, lanes_of(road.network), Way.along(road, world), passages)):
+        for way in find(_Around(role, road, lanes_of(road.network), driven_line(road, world), passages)):
             if way is not None and way.meets is not None and way.meets[1] >= near:
                 return way
     side = f"the {role.side}{' side' * (role.side == 'opposite')}" if role.side else "another side"
@@ -71,7 +71,7 @@ def way_of(role: Role, near: float, road: "Road", world: "World", away: float | 
     raise SceneError(f"the route passes no {lacks}; change one of them")
 
 
-def _across(role: Role, near: float, road: "Road", world: "World", away: float | None) -> Way:
+def _across(role: Role, near: float, road: "Road", world: "World", away: float | None) -> Line:
     """Returns the way straight across the road, at right angles to the tested car's path, or into its lane
     for who turns in."""
     s = near if role.where != "crosswalk" else _crosswalk(near, road, role.at is None)
@@ -101,7 +101,7 @@ def _across(role: Role, near: float, road: "Road", world: "World", away: float |
     t = profile.middle(along) + SIGN[side] * across
     xyz = road.at(along, t)
     xyz[:, 2] = road.at(along, np.clip(t, rims.right, rims.left))[:, 2]
-    way, first = Way.through(xyz), int((across <= MERGED).argmax())
+    way, first = Line.through(xyz), int((across <= MERGED).argmax())
     met = (float(way.stations[first]), float(along[first])) if turns_in else (begin, s)
     return replace(way, meets=met)
 
@@ -129,7 +129,7 @@ class _Around(NamedTuple):
     role: Role
     route: Route
     lanes: Lanes
-    path: Way
+    path: Line
     passages: Sequence[Passage]
 
     @property
@@ -156,7 +156,7 @@ class _Around(NamedTuple):
         """Returns the lane in which the tested car comes to a passage."""
         return self.route.legs[bisect_right(self.route.starts, passage.start - SPACING) - 1]
 
-    def whole(self, legs: Sequence[Leg]) -> tuple[Way, float]:
+    def whole(self, legs: Sequence[Leg]) -> tuple[Line, float]:
         """Returns the way that comes to the first of some lanes as straight as possible, and not along the
         tested car's, and goes on so behind the last one; and where the first lane begins."""
         before, behind = list[Leg](), list[Leg]()
@@ -175,9 +175,9 @@ class _Around(NamedTuple):
             rows = lane.at(np.linspace(0.0, lane.length, max(2, math.ceil(lane.length / SPACING) + 1)))
             is_joined = bool(parts) and math.dist(parts[-1][-1, :2], rows[0, :2]) < SPACING / 2
             parts.append(rows[1:] if is_joined else rows)
-        return Way.through(np.concatenate(parts)), sum(self.lanes[each].length for each in before)
+        return Line.through(np.concatenate(parts)), sum(self.lanes[each].length for each in before)
 
-    def met(self, legs: Sequence[Leg], passage: Passage, since: int = 0) -> Way | None:
+    def met(self, legs: Sequence[Leg], passage: Passage, since: int = 0) -> Line | None:
         """Returns the way along lanes with the first place at a passage where it crosses the tested car's
         path or, if they have a lane in common, becomes one with it. Lanes before number ``since`` do not
         count. None if there is no such place."""
@@ -199,7 +199,7 @@ class _Around(NamedTuple):
         places = sorted(zip(own[is_there].tolist(), s[is_there].tolist(), strict=True))
         return replace(way, meets=places[0]) if places else None
 
-    def passed(self, legs: Sequence[Leg], passage: Passage) -> Way:
+    def passed(self, legs: Sequence[Leg], passage: Passage) -> Line:
         """Returns the way along lanes that meet the tested car's path nowhere, as if they met in the middle
         of the junction."""
         way, own = self.whole(legs)
@@ -207,7 +207,7 @@ class _Around(NamedTuple):
         return replace(way, meets=(own, (passage.start + passage.end) / 2))
 
 
-def _through_junction(around: _Around) -> Iterator[Way | None]:
+def _through_junction(around: _Around) -> Iterator[Line | None]:
     """Yields the ways from an arm of a junction through it: straight on, where that is possible, or for who
     turns across the tested car's path or into it; and at last those on which somebody passes it."""
     role, route, network = around.role, around.route, around.route.network
@@ -217,7 +217,7 @@ def _through_junction(around: _Around) -> Iterator[Way | None]:
     whats = {each.what: each.side for each in role.actions}
     phases = Lights(network, 0, [role]).phases
     directions = {arm.end: arm.direction for each in network.junctions for arm in each.arms}
-    passing = list[Way]()
+    passing = list[Line]()
     for passage in around.passages:
         found, own = list[tuple[Any, ...]](), phases.get(passage.arrival)
         is_plain = passage.entered.id not in network.roundabout_of and passage.entered.kind not in RAMPS
@@ -249,7 +249,7 @@ def _through_junction(around: _Around) -> Iterator[Way | None]:
     yield from passing
 
 
-def _on_ring(around: _Around) -> Iterator[Way | None]:
+def _on_ring(around: _Around) -> Iterator[Line | None]:
     """Yields the ways around the ring of a roundabout, past the place where the tested car enters, to exits
     that it does not take."""
     route, rings = around.route, around.route.network.roundabout_of
@@ -266,7 +266,7 @@ def _on_ring(around: _Around) -> Iterator[Way | None]:
                         yield around.met((*loop[:-1], *onward), passage, len(loop) - 2)
 
 
-def _from_ramp(around: _Around) -> Iterator[Way | None]:
+def _from_ramp(around: _Around) -> Iterator[Line | None]:
     """Yields the ways along a lane that ends beside the tested car's, such as one for acceleration behind a
     ramp, and into that; and along a ramp that joins it without such a lane."""
     lanes, legs = around.lanes, around.route.legs
@@ -282,23 +282,23 @@ def _from_ramp(around: _Around) -> Iterator[Way | None]:
     yield from _through_junction(around._replace(passages=merges))
 
 
-def _into(around: _Around, way: Way, begin: float, end: float) -> Way | None:
+def _into(around: _Around, way: Line, begin: float, end: float) -> Line | None:
     """Returns the way that changes to the tested car's path in the middle between two of its stations."""
     path, length = around.path, min(LONGEST, SHARE * (end - begin))
     kept = way.stations < (begin + end - length) / 2
     if kept.sum() < 2:
         return None
-    (at,), (aside,), _ = path.locate(*way.points[kept][-1, :2])
+    at, aside = map(float, path.locate(*way.points[kept][-1, :2]))
     ahead = path.stations > at
     cos, sin = np.cos(path.points[ahead, 3]), np.sin(path.points[ahead, 3])
     left = aside * (1 + np.cos(np.pi * np.minimum((path.stations[ahead] - at) / length, 1.0))) / 2
     rest = path.points[ahead, :3] + np.column_stack([-left * sin, left * cos, 0 * left])
-    whole = Way.through(np.vstack([way.points[kept, :3], rest]))
+    whole = Line.through(np.vstack([way.points[kept, :3], rest]))
     first = int((np.abs(left) <= MERGED).argmax())
     return replace(whole, meets=(float(whole.stations[kept.sum() + first]), float(around.s[ahead][first])))
 
 
-def _turning_off(around: _Around) -> Iterator[Way | None]:
+def _turning_off(around: _Around) -> Iterator[Line | None]:
     """Yields the ways along the tested car's lane that leave its road at a junction, which is where they meet
     last."""
     role, path = around.role, around.path
@@ -311,14 +311,14 @@ def _turning_off(around: _Around) -> Iterator[Way | None]:
                 is_there = abs(by) > STRAIGHT_AHEAD and (by > 0) == (side == "left")
             if is_there:
                 kept, (rest, _) = around.s < passage.start - SPACING / 2, around.whole(legs[1:])
-                way = Way.through(np.vstack([path.points[kept, :3], rest.points[:, :3]]))
+                way = Line.through(np.vstack([path.points[kept, :3], rest.points[:, :3]]))
                 behind = way.stations[kept.sum() :]
                 beyond = passage.start + behind - behind[0]
                 met = float(behind[0]), passage.start
                 yield replace(way, meets=met, road_stations=np.r_[around.s[kept], beyond])
 
 
-WAYS: Mapping[str, tuple[Callable[[_Around], Iterator[Way | None]], str]] = {
+WAYS: Mapping[str, tuple[Callable[[_Around], Iterator[Line | None]], str]] = {
     "junction": (
         _through_junction,
         "junction after {near:.0f} m at which somebody from {side} who {does} meets the tested car",

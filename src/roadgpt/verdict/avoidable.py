@@ -22,17 +22,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.brief.visibility import visual_range, weather_drawn
-from roadgpt.drive.company import EYE, SPACING, in_sight
+from roadgpt.drive import company
+from roadgpt.geometry.boxes import separation
 from roadgpt.language.table import VEHICLES
 from roadgpt.network import legs_of, network_of
 from roadgpt.network.landscape import horizon_around
 from roadgpt.network.lanes import lanes_of
-from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y
-from roadgpt.traffic.way import LEAST_GRIP, Way
+from roadgpt.network.line import LEAST_GRIP, SPACING, Line, driven_line
+from roadgpt.traffic.actor import SPEED, STEP, STILL, X
 from roadgpt.verdict.careful import CAREFUL, DRIVERS, FULL, DriverModel, Moment, drive_on, stopping_distance
-from roadgpt.verdict.contact import middles, separation
 from roadgpt.verdict.criteria import OVER_BY, limits_at
-from roadgpt.verdict.measures import ACROSS, ALONG, Line, Measures, measure
+from roadgpt.verdict.measures import ACROSS, Measures, measure
 from roadgpt.verdict.verdict import PARTLY, Incident, percent
 
 if TYPE_CHECKING:
@@ -131,7 +131,7 @@ def _braked_for_nothing(
         return ""
     since, before = time[hard[0]] - OVER, earlier[hard[0]]
     far, s = before**2 / (2 * COMFORT) + before, float(np.interp(since, drive["time"], drive["s"]))
-    ahead = np.linspace(s, min(s + far, road.length), int(far / ALONG) + 2)
+    ahead = np.linspace(s, min(s + far, road.length), int(far / SPACING) + 2)
     others = [each.name != collision.other for each in drive.others.actors]
     needs = (measured.deceleration > CALLS) | (measured.conflict < SOON) | (measured.headway < CLOSE)
     lanes, legs = lanes_of(network_of(road, world)), legs_of(road, world)
@@ -153,8 +153,8 @@ def _course(driver: DriverModel, meeting: "_Encounter") -> str:
     places, speeds = drive_on(driver, meeting.seen, meeting.free, FINE, float(meeting.places[0]))
     ahead = meeting.along - places
     away = np.stack([ahead, meeting.t], axis=-1)
-    apart = separation(away, np.zeros(len(ahead)), meeting.heading, meeting.half, meeting.halves).max(axis=-1)
-    gap = (ahead - meeting.stretch - meeting.half[0])[(meeting.clearance < 0) & (ahead > 0)]
+    apart = separation(away, np.zeros(len(ahead)), meeting.own, meeting.heading, meeting.its).max(axis=-1)
+    gap = (ahead - meeting.stretch - meeting.own[0] / 2)[(meeting.clearance < 0) & (ahead > 0)]
     if (apart < 0).any():
         return COLLIDES
     is_told = len(gap) and not speeds[-1] and gap.min() >= 0.05
@@ -180,9 +180,8 @@ class _Encounter:
         self.measured = measure(road, drive, world)
         self.gap = self.measured.gap[self.measured.time <= self.at_time]
         way, self.when, self.run, aside = _way(drive, self.measured.lane, STEP * begin, self.at_time)
-        other, (length, width, _) = states[begin:end], actor.size
-        size = np.broadcast_to([length / 2, width / 2], (len(other), 2))
-        boxes = way.boxes(other[:, X], other[:, Y], other[:, HEADING], size, other[:, SPEED])
+        other, size = states[begin:end], np.array(actor.size[:2])
+        boxes = way.boxes(other, size)
         time, self.way = STEP * np.arange(begin, hit + 1), way
         self._horizon = horizon_around(road, world)
         scene = weather_drawn(world.scene, drive.seed)
@@ -227,15 +226,15 @@ class _Encounter:
         self.along, self.t, self.heading, self.stretch, self.clearance = (
             np.interp(at, whole, row) for row in (along, t, heading, stretch, clearance)
         )
-        self.half, self.halves = np.array([drive.car.length, drive.car.width]) / 2, size[0]
+        self.own, self.its = np.array([drive.car.length, drive.car.width]), size
         flags = (pace, towards, follows, visible, (clearance < 0) | is_coming, sudden)
         rows = (self.along, self.stretch, self.clearance, *(row[sample] for row in flags))
         self._rows = [*zip(*(row.tolist() for row in rows), strict=True)]
-        self._length = drive.car.length + length
+        self._length = drive.car.length + float(size[0])
 
         then = np.minimum(at, self.at_time)
-        self._lane, driven = Way.along(road, world), np.interp(self.when, drive["time"], drive["s"])
-        grid = np.arange(0.0, way.run[-1] + ALONG, ALONG)  # beyond the driven part, stations go on with it
+        self._lane, driven = driven_line(road, world), np.interp(self.when, drive["time"], drive["s"])
+        grid = np.arange(0.0, way.length + SPACING, SPACING)  # beyond the driven part, stations go on with it
         s = np.interp(grid, self.run, driven) + np.maximum(grid - self.run[-1], 0.0)
         self._stations = [self._lane.from_road(each) for each in s.tolist()]
 
@@ -261,15 +260,15 @@ class _Encounter:
         actors, states = self.drive.others.actors, self.drive.others.at(time)
         order = np.flatnonzero(~np.isnan(states[:, X]))
         sizes, count = np.array([each.size for each in actors]), len(order)
-        eye = self.way.at(np.array(self._eye(time))) + [0.0, 0.0, EYE]
-        ground = np.column_stack([self.way.middle, self.way.z])[:: round(SPACING / ALONG)].copy()
+        eye = np.array(self.way.pose(self._eye(time))[:3]) + [0.0, 0.0, company.EYE]
+        ground = self.way.points[:: round(company.SPACING / SPACING), :3].copy()
         far, seen = reach + sizes[number, 0] / 2, np.empty((count, 4))
-        found = in_sight(states, sizes, eye, ground, self._horizon, order, seen, count, far)
+        found = company.in_sight(states, sizes, eye, ground, self._horizon, order, seen, count, far)
         return number in order[:found]
 
     def _grip(self, place: float, speed: float) -> float:
         """With how many m/s^2 one brakes at most at a place of the way."""
-        station = self._stations[min(max(int(place / ALONG), 0), len(self._stations) - 1)]
+        station = self._stations[min(max(int(place / SPACING), 0), len(self._stations) - 1)]
         left, _, falls = self._lane.room(station, speed)
         return left + falls
 
@@ -279,10 +278,10 @@ class _Encounter:
         grip = self._grip(place, speed)
         if not visible:
             return Moment(np.inf, np.inf, self._length, speed, gained, pace, 0.0, False, grip=grip)
-        gap, meets = along - stretch - place - self.half[0], False
+        gap, meets = along - stretch - place - self.own[0] / 2, False
         if not follows and (clearance < 0 or towards > 0):
             enters = max(clearance, 0.0) / towards if clearance > 0 else 0.0
-            meets = along + stretch + pace * enters > place + speed * enters - self.half[0]
+            meets = along + stretch + pace * enters > place + speed * enters - self.own[0] / 2
         way = (gap, clearance, self._length, speed, gained, pace, towards)
         return Moment(*way, perceived and follows, sudden, meets, grip)
 
@@ -311,28 +310,27 @@ def _way(
 ) -> tuple[Line, FloatArray, FloatArray, float]:
     """Returns the way of the middle of the tested car's box up to the contact and along its lane, the times
     and stations at which it was there, and how far it was to the left of its lane's middle at last."""
-    time, (x, y, heading) = drive["time"], middles(drive).T
+    time, (x, y, heading) = drive["time"], drive.middles.T
     when = np.append(time[(time >= begin) & (time < contact)], contact)
     columns = (x, y, drive["z"] - drive.car.height, heading)
     *track, heading = (np.interp(when, time, column) for column in columns)
     points = np.stack(track, axis=-1)
     run = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points[:, :2], axis=0).T))])
-    short = max(ALONG - run[-1], 0.0)  # a way of at least one stretch, if the car stood
+    short = max(SPACING - run[-1], 0.0)  # a way of at least one stretch, if the car stood
     behind = points[0] - short * np.array([np.cos(heading[0]), np.sin(heading[0]), 0.0])
     run += short
-    grid = np.linspace(0.0, run[-1], int(run[-1] / ALONG) + 1)
+    grid = np.linspace(0.0, run[-1], int(run[-1] / SPACING) + 1)
     driven = [np.interp(grid, np.append(0.0, run), row) for row in np.vstack([behind, points]).T]
-    zero = np.zeros((1, 2))
-    last = lane.boxes(points[-1:, 0], points[-1:, 1], heading[-1:], zero, zero[:, 0])
-    further = lane.at(last.along + np.arange(ALONG, AHEAD, ALONG), float(last.t[0]))
+    s, t = map(float, lane.locate(*points[-1, :2]))
+    further = [lane.pose(s + each, t)[:3] for each in np.arange(SPACING, AHEAD, SPACING).tolist()]
     way = np.concatenate([np.stack(driven, axis=-1), further])
-    return Line(way, np.full(len(way), drive.car.width)), when, run, float(last.t[0])
+    return Line.through(way, drive.car.width), when, run, t
 
 
 def _sight(way: Line, eye_at: float, reach: float) -> float:
     """Returns how far an eye sees an object of OBJECT on its way in metres, in a visual range."""
-    ahead = way.run > eye_at
-    away, low = way.run[ahead] - eye_at, way.z[ahead] - way.at(np.array(eye_at))[2] - EYE
+    ahead = way.stations > eye_at
+    away, low = way.stations[ahead] - eye_at, way.points[ahead, 2] - way.pose(eye_at)[2] - company.EYE
     hides = np.append(-np.inf, np.maximum.accumulate(low / away)[:-1])
     hidden = (low + OBJECT) / away < hides
     return min(float(away[np.argmax(hidden)]) if hidden.any() else np.inf, reach)

@@ -19,8 +19,8 @@ import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
+from roadgpt.network.line import LEAST_GRIP
 from roadgpt.road.speed_profile import GRAVITY
-from roadgpt.traffic.way import LEAST_GRIP
 
 FULL, JERK = 0.774 * GRAVITY, 12.65  # m/s^2; m/s^3, with which it is reached in 0.6 s
 DELAY, RELEASED = 0.75, 0.4  # s; m/s^2, with the foot off the accelerator

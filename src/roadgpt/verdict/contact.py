@@ -3,8 +3,7 @@
 Both are boxes in plan. Between two steps of a drive, a box moves evenly along a straight line and turns
 evenly. A contact is the first moment at which the boxes are within TOUCH of each other; it is found by
 conservative advancement: nobody can come closer than the distance, divided by the fastest approach, allows.
-The distance is that of the separating axis theorem, which is never larger than the true one (Gottschalk, Lin
-and Manocha 1996).
+The distance is that of the separating axis theorem (``geometry.boxes``).
 
 ``nuplan_at_fault`` is that of nuPlan (Karnchanachari et al. 2024, "no at-fault collisions"): it is the tested
 car's fault, if it moves and hits somebody who stands, or hits somebody with its front, or with a side while
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from roadgpt.geometry.boxes import corners, separation, turned
 from roadgpt.network.lanes import HEADROOM
 from roadgpt.traffic.actor import HEADING, SPEED, STEP, X, Y, Z
 from roadgpt.verdict.verdict import STANDS, Contact, Face, Incident
@@ -30,37 +30,6 @@ TOUCH = 1e-3  # m; positions of tracks are rounded to it
 SLACK = 1.0  # m, by which the car's way between two samples of a track may differ from a straight line
 CORNER = 0.02  # m, within which a corner belongs to the place of contact
 PARALLEL = np.radians(20.0)  # two sides at a smaller angle meet flat; else a corner meets a side
-OUTLINE = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1)])
-
-
-def middles(drive: "Drive") -> FloatArray:
-    """Returns the middle of the car's box (x, y) and its heading at every step, shape (n, 3)."""
-    heading = np.unwrap(drive["heading"])
-    ahead = drive.car.ahead
-    return np.stack(
-        [drive["x"] + ahead * np.cos(heading), drive["y"] + ahead * np.sin(heading), heading], axis=-1
-    )
-
-
-def separation(
-    away: FloatArray, own: FloatArray, other: FloatArray, half: FloatArray, halves: FloatArray
-) -> FloatArray:
-    """Returns by how many metres two boxes are apart along the normals of their sides, shape (..., 4): along
-    and across the first box, along and across the second. The largest of the four is negative exactly if they
-    overlap.
-
-    ``away`` (..., 2) leads from the middle of the first to that of the second, ``own`` and ``other`` are
-    their headings, ``half`` and ``halves`` (..., 2) half of their lengths and widths."""
-    angle = other - own
-    c, s = np.abs(np.cos(angle)), np.abs(np.sin(angle))
-    apart = []
-    for heading, mine, theirs in ((own, half, halves), (other, halves, half)):
-        cos, sin = np.cos(heading), np.sin(heading)
-        along = np.abs(away[..., 0] * cos + away[..., 1] * sin)
-        across = np.abs(away[..., 1] * cos - away[..., 0] * sin)
-        apart.append(along - mine[..., 0] - theirs[..., 0] * c - theirs[..., 1] * s)
-        apart.append(across - mine[..., 1] - theirs[..., 0] * s - theirs[..., 1] * c)
-    return np.stack(apart, axis=-1)
 
 
 def contacts_of(drive: "Drive") -> tuple[Incident, ...]:
@@ -75,10 +44,10 @@ def contacts_of(drive: "Drive") -> tuple[Incident, ...]:
 def _first_contacts(drive: "Drive") -> tuple[NDArray[np.int64], NDArray[np.int64], FloatArray]:
     """Returns step, actor and share of the way to the next step of the first contacts, one for each actor."""
     assert drive.others is not None
-    others, time, car = drive.others, drive["time"], middles(drive)
-    half = np.array([drive.car.length, drive.car.width]) / 2
-    halves = np.array([each.size[:2] for each in others.actors]) / 2
-    reach, reaches = np.hypot(*half), np.hypot(halves[:, 0], halves[:, 1])
+    others, time, car = drive.others, drive["time"], drive.middles
+    size = np.array([drive.car.length, drive.car.width])
+    sizes = np.array([each.size[:2] for each in others.actors])
+    reach, reaches = np.hypot(*size) / 2, np.hypot(sizes[:, 0], sizes[:, 1]) / 2
     step, actor = np.nonzero(_is_near(drive, car, reach + reaches))
     after = np.minimum(step + 1, len(time) - 1)
     states, later = others.at(time[step], actor), others.at(time[after], actor)
@@ -91,13 +60,13 @@ def _first_contacts(drive: "Drive") -> tuple[NDArray[np.int64], NDArray[np.int64
     near = np.flatnonzero(level & (np.hypot(*away.T) - reach - reaches[actor] <= most + TOUCH))
     step, actor = step[near], actor[near]
     away, change, most = away[near], change[near], most[near]
-    headings, turn, turns, halves = states[near, HEADING], turn[near], turns[near], halves[actor]
+    headings, turn, turns, sizes = states[near, HEADING], turn[near], turns[near], sizes[actor]
     share, is_open = np.zeros(len(step)), np.ones(len(step), bool)
     while is_open.any():
         k = np.flatnonzero(is_open)
         u = share[k]
         place, own, other = away[k] + u[:, None] * change[k], car[step[k], 2] + u * turn[k], headings[k]
-        apart = separation(place, own, other + u * turns[k], half, halves[k]).max(axis=-1)
+        apart = separation(place, own, size, other + u * turns[k], sizes[k]).max(axis=-1)
         is_open[k] = apart > TOUCH
         share[k] += np.where(apart > TOUCH, apart / np.maximum(most[k], TOUCH / 2), 0.0)
         is_open[k] &= share[k] <= 1.0
@@ -130,28 +99,28 @@ def _described(drive: "Drive", step: int, number: int, share: float) -> Incident
         return np.asarray((1 - share) * values[step] + share * values[last])
 
     time = float(between(drive["time"]))
-    car, other = between(middles(drive)), drive.others.at(time)[number]
+    car, other = between(drive.middles), drive.others.at(time)[number]
     if np.isnan(other[X]):  # it left at the step itself
         other = drive.others.at(drive["time"][step])[number]
-    half = np.array([[drive.car.length, drive.car.width], actor.size[:2]]) / 2
+    size = np.array([[drive.car.length, drive.car.width], actor.size[:2]])
     place, heading = np.stack([car[:2], other[[X, Y]]]), np.array([car[2], other[HEADING]])
-    corners = [at + turned(OUTLINE * size, way) for at, size, way in zip(place, half, heading, strict=True)]
+    outlines = corners(place, heading, size)
     inside = [
         point
         for mine in (0, 1)
-        for point in corners[mine]
-        if (np.abs(turned(point - place[1 - mine], -heading[1 - mine])) <= half[1 - mine] + CORNER).all()
+        for point in outlines[mine]
+        if (np.abs(turned(point - place[1 - mine], -heading[1 - mine])) <= size[1 - mine] / 2 + CORNER).all()
     ]
     spot = np.mean(inside, axis=0) if inside else place.mean(axis=0)
     away = place[1] - place[0]
-    apart = separation(away, heading[0], heading[1], *half)
+    apart = separation(away, heading[0], size[0], heading[1], size[1])
     faces = [
         _face(n, away * (1 - 2 * n), heading, apart, turned(spot - place[n], -heading[n])) for n in (0, 1)
     ]
     speed, its = float(abs(between(drive["speed"]))), float(other[SPEED])
     velocity = turned(np.array([between(drive["vx"]), between(drive["vy"])]), heading[0])
     impact = velocity - its * np.array([np.cos(heading[1]), np.sin(heading[1])])
-    across = np.clip(turned(corners[1] - place[0], -heading[0])[:, 1], -half[0, 1], half[0, 1])
+    across = np.clip(turned(outlines[1] - place[0], -heading[0])[:, 1], -size[0, 1] / 2, size[0, 1] / 2)
     is_aside = faces[0] in ("left", "right")
     fault = speed > STANDS and (
         abs(its) <= STANDS or faces[0] == "front" or (is_aside and drive["outside"][step] > 0)
@@ -188,10 +157,3 @@ def _face(mine: int, away: FloatArray, heading: FloatArray, apart: FloatArray, s
     if is_across != is_crossed:
         return "left" if left > 0 else "right"
     return "front" if ahead > 0 else "rear"
-
-
-def turned(points: FloatArray, angle: FloatArray | float) -> FloatArray:
-    """Returns points (..., 2) turned about the origin by angles that broadcast with their coordinates."""
-    c, s = np.cos(angle), np.sin(angle)
-    x, y = points[..., 0], points[..., 1]
-    return np.stack([x * c - y * s, x * s + y * c], axis=-1)

@@ -34,7 +34,6 @@ ALONG = math.radians(30.0)  # between the heading of the car and that of a wrong
 BACKWARDS, BACK = math.radians(90.0), 1.0  # between the headings of car and route; s of driving the wrong way
 STOP_WITHIN = 4.0  # m before the line
 EDGE = 0.02  # m, by which a tyre may be beyond the polygon of the paved area, whose chords cut bends by 2 mm
-STEP = 1.0  # m, between points at which the heading of other roads is known
 CONFLICT, ENCROACHED = 0.95, 1.0  # s
 APART = 3.0  # s between two near misses
 STOOD, PATIENCE, FREE = 0.1, 30.0, 10.0  # m/s, s, m
@@ -160,10 +159,7 @@ def _wrong_turns(case: Judged) -> list[Incident]:
         on = contains_xy(ribbon(member.road), x, y)
         if member.id in own or not on.any():
             continue
-        s = np.linspace(0.0, member.road.length, max(2, math.ceil(member.road.length / STEP) + 1))
-        points = member.road.plan.at(s)
-        away = np.hypot(x[on, None] - points[:, 0], y[on, None] - points[:, 1])
-        ahead = member.road.heading(s[np.argmin(away, axis=1)])
+        ahead = member.road.heading(member.road.locate(x[on], y[on])[0])
         turned = np.abs(wrap_angle(drive["heading"][steps[on]] - ahead))
         if member.junction is None:  # an arm, on which one may drive either way
             turned = np.minimum(turned, math.pi - turned)
@@ -177,15 +173,13 @@ def _off_road(case: Judged) -> list[Incident]:
     """The rear axle is assumed to be as far behind the middle of the car as the front axle is ahead of it."""
     import shapely
 
+    from roadgpt.geometry.boxes import corners
+
     drive, paved = case.drive, network_of(case.road, case.world).paved.buffer(EDGE)
     shapely.prepare(paved)
-    front, side = drive.car.axle, drive.car.tyres / 2
-    rear = 2 * drive.car.ahead - front
-    corners = np.array([[front, side], [front, -side], [rear, -side], [rear, side]])
-    c, n = np.cos(drive["heading"])[:, None], np.sin(drive["heading"])[:, None]
-    x = drive["x"][:, None] + c * corners[:, 0] - n * corners[:, 1]
-    y = drive["y"][:, None] + n * corners[:, 0] + c * corners[:, 1]
-    off = ~shapely.contains_xy(paved, x, y).all(axis=1)
+    size = np.array([2 * (drive.car.axle - drive.car.ahead), drive.car.tyres])
+    tyres = corners(drive.middles[:, :2], drive["heading"], size)
+    off = ~shapely.contains_xy(paved, tyres[..., 0], tyres[..., 1]).all(axis=1)
     return case.began("off road", _lasting(drive["time"], off))
 
 

@@ -18,11 +18,12 @@ from numpy.typing import NDArray
 from roadgpt.language.table import PERSONS, VEHICLES
 from roadgpt.network import legs_of, network_of, only_road
 from roadgpt.network.lanes import lanes_of
+from roadgpt.network.line import Boxes, Line
 from roadgpt.network.markings import CROSSED
 from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y
 from roadgpt.verdict.contact import CORNER
 from roadgpt.verdict.criteria import OVER, OVER_BY, STOOD, STOP_WITHIN, TOO_FAST, limits_at
-from roadgpt.verdict.measures import ACROSS, Boxes, Line, measure
+from roadgpt.verdict.measures import ACROSS, measure
 from roadgpt.verdict.right_of_way import LATER, who_drives
 from roadgpt.verdict.verdict import STANDS, Contact, Fault, Incident, Law, Offence, Party
 
@@ -138,15 +139,14 @@ def _on_road(
     assert contact is not None
     line, kind = measured.lane, drive.others.actors[number].kind
     mine, boxes = measured.car[: last + 1], measured.others[: last + 1, number]
-    x, y, zero = (np.array([each]) for each in (*contact.xy, 0.0))
-    spot = line.boxes(x, y, zero, np.zeros((1, 2)), zero)
-    reach = float(np.interp(spot.along[0], line.run, line.width)) / 2
+    s, t = map(float, line.locate(*contact.xy))
+    reach = float(line.width_at(s)) / 2
     along, across = boxes.velocity[-1]
     stands = np.hypot(along, across) <= STILL
     lately = (drive["time"] > hit.at_time - BACKS) & (drive["time"] <= hit.at_time)
     if drive["vx"][lately].max() < -STILL:
         return "other", {"wrong way"}, set()
-    if abs(float(spot.t[0])) >= reach - CORNER:
+    if abs(t) >= reach - CORNER:
         is_over = abs(mine.t[-1]) > reach and along < 0
         return "other", {"wrong way" if is_over else "lane"}, set()
     network, heading = network_of(road, world), float(drive.others.states[last, number, HEADING])
@@ -159,7 +159,7 @@ def _on_road(
         if is_turn and is_there and np.cos(heading - came) > np.cos(TURNS):
             return "other", {"priority"}, set()
     if not stands and abs(across) > ACROSS * np.hypot(along, across):
-        s, crossed = float(spot.along[0]), network.crossed
+        crossed = network.crossed
         for way in road.passages if kind in PERSONS else ():
             arrives = way.arrival in crossed and way.start - CROSSED <= s <= way.start
             leaves = way.departure in crossed and way.end <= s <= way.end + CROSSED
@@ -189,5 +189,5 @@ def _came_in_short(line: Line, ahead: Boxes, behind: Boxes) -> bool:
     if not len(out) or (came := int(out[-1]) + 1) >= len(ahead.t):
         return False
     closing = max(behind.velocity[came, 0] - ahead.velocity[came, 0], 0.0)
-    gap = ahead.along[came] - ahead.reach[0][came] - behind.along[came] - behind.half[came, 0]
+    gap = ahead.along[came] - ahead.reach[0][came] - behind.along[came] - behind.size[came, 0] / 2
     return bool(gap < closing * BEGINS + closing**2 / (2 * BRAKES) + ahead.velocity[came, 0] * APART)

@@ -24,16 +24,15 @@ boxes cover the same offsets, wherever the tested car is.
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.geometry import wrap_angle
-from roadgpt.geometry.curve import LEAST_STRETCH
+from roadgpt.geometry import boxes
 from roadgpt.network.lanes import HEADROOM
-from roadgpt.traffic.actor import HEADING, SPEED, STEP, X, Y, Z
-from roadgpt.verdict.contact import OUTLINE, middles, separation, turned
+from roadgpt.network.line import Boxes, Line, driven_line
+from roadgpt.traffic.actor import HEADING, STEP, X, Y, Z
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
@@ -44,29 +43,7 @@ BoolArray = NDArray[np.bool_]
 
 EVEN = 0.02  # m/s; speeds that differ by less are equal, but for rounding
 NEAR = 150.0  # m, beyond which others are not measured: 4 s at 130 km/h
-ALONG = 0.5  # m between points of the middle of the lane
 ACROSS = np.sin(np.radians(30.0))
-
-
-@dataclass(frozen=True, eq=False)
-class Boxes:
-    """Boxes along a Line, and across it; metres, radians, m/s."""
-
-    along: FloatArray
-    t: FloatArray
-    heading: FloatArray
-    half: FloatArray  # (..., 2): half of length and width
-    velocity: FloatArray  # (..., 2): along and across
-
-    def __getitem__(self, rows: Any) -> "Boxes":
-        return Boxes(*(part[rows] for part in vars(self).values()))
-
-    @property
-    def reach(self) -> tuple[FloatArray, FloatArray]:
-        """Half of what the box covers along and across."""
-        c, s = np.abs(np.cos(self.heading)), np.abs(np.sin(self.heading))
-        length, width = self.half[..., 0], self.half[..., 1]
-        return length * c + width * s, length * s + width * c
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +70,7 @@ class Measures:
     pet_time: FloatArray
     """When the first one had left the area, in seconds, shape (actors,); NaN without a post-encroachment
     time."""
-    lane: "Line"
+    lane: Line
     """The middle of the driven lane, along which all are measured."""
     car: Boxes
     others: Boxes
@@ -105,29 +82,26 @@ def measure(road: "Road", drive: "Drive", world: "World") -> Measures:
     """Returns the measures of a drive with others on the road."""
     assert drive.others is not None
     time = np.arange(0.0, drive.duration + 1e-6, STEP)
-    pose = middles(drive)
+    x, y, heading = drive.middles.T
     slip = np.arctan2(drive["vy"], drive["vx"])  # of the car's motion against its heading
-    x, y, heading, z, speed, slip = (
-        np.interp(time, drive["time"], column) for column in (*pose.T, drive["z"], drive["speed"], slip)
-    )
+    columns = x, y, drive["z"] - drive.car.height, heading, np.abs(drive["speed"]), slip
+    own = np.column_stack([np.interp(time, drive["time"], column) for column in columns])
     states = drive.others.at(time)
-    away = states[..., [X, Y]] - np.stack([x, y], axis=-1)[:, None]
-    level = np.abs(z[:, None] - drive.car.height - states[..., Z]) < HEADROOM
+    away = states[..., [X, Y]] - own[:, None, [X, Y]]
+    level = np.abs(own[:, None, Z] - states[..., Z]) < HEADROOM
     near = level & (np.hypot(away[..., 0], away[..., 1]) < NEAR)  # false for NaN
     step, who = np.nonzero(near)
-    sizes = np.array([each.size[:2] for each in drive.others.actors]).reshape(-1, 2) / 2
-    lane = driven_lane(road, world)
-    half = np.broadcast_to(np.array([drive.car.length, drive.car.width]) / 2, (len(time), 2))
-    car = lane.boxes(x, y, heading, half, np.abs(speed), slip)
-    found = states[near]
-    others = lane.boxes(found[:, X], found[:, Y], found[:, HEADING], sizes[who], found[:, SPEED])
-    own = car[step]
-    (stretch, side), (stretches, sides) = own.reach, others.reach
-    rate, its = own.velocity[:, 0], others.velocity[:, 0]
-    abreast = np.abs(others.t - own.t) < sides + side
-    same = (lane.holds(others) & lane.holds(own)) | abreast
-    ahead = same & (others.along > own.along)
-    gap = np.maximum(others.along - stretches - own.along - stretch, 0.0)
+    sizes = np.array([each.size[:2] for each in drive.others.actors]).reshape(-1, 2)
+    lane = driven_line(road, world)
+    car = lane.boxes(own[:, :5], np.array([drive.car.length, drive.car.width]), own[:, 5])
+    found, mine = states[near], car[step]
+    others = lane.boxes(found, sizes[who])
+    (stretch, side), (stretches, sides) = mine.reach, others.reach
+    rate, its = mine.velocity[:, 0], others.velocity[:, 0]
+    abreast = np.abs(others.t - mine.t) < sides + side
+    same = (lane.holds(others) & lane.holds(mine)) | abreast
+    ahead = same & (others.along > mine.along)
+    gap = np.maximum(others.along - stretches - mine.along - stretch, 0.0)
     closing = rate - its
     front = np.maximum.accumulate(car.along + car.reach[0])
     arrival = np.interp(others.along - stretches, front, time, right=np.inf)
@@ -147,69 +121,17 @@ def measure(road: "Road", drive: "Drive", world: "World") -> Measures:
     return Measures(
         time,
         spread(ttc),
-        spread(_conflict(own, others)),
+        spread(_conflict(mine, others)),
         spread(np.where(ahead, arrival - time[step], np.inf)),
         spread(needed, 0.0),
         spread(np.where(ahead, gap, np.inf)),
-        spread(_distance(away[near], heading[step], own.half, found[:, HEADING], others.half)),
+        spread(boxes.distance(away[near], own[step, HEADING], mine.size, found[:, HEADING], others.size)),
         np.array([each[0] for each in pets]),
         np.array([each[1] for each in pets]),
         lane,
         car,
         Boxes(*(spread(part, np.nan) for part in vars(others).values())),
     )
-
-
-class Line:
-    """A line on the ground that is straightened, with the width in metres of the strip along it; before its
-    begin and after its end it goes straight on. ``points`` (n, 3) are x, y, z, about ALONG apart."""
-
-    def __init__(self, points: FloatArray, width: FloatArray) -> None:
-        from scipy.spatial import cKDTree
-
-        self.middle, self.z, self.width = points[:, :2], points[:, 2], width
-        steps = np.diff(self.middle, axis=0)
-        self.run = np.concatenate([[0.0], np.cumsum(np.hypot(*steps.T))])
-        self.heading = np.unwrap(np.arctan2(*np.gradient(self.middle, self.run, axis=0).T[::-1]))
-        self.curvature = np.gradient(self.heading, self.run)
-        self.curvature[[0, -1]] = 0.0
-        self.tree = cKDTree(self.middle)
-
-    def boxes(
-        self, x: FloatArray, y: FloatArray, heading: FloatArray, half: FloatArray, speed: FloatArray,
-        slip: FloatArray | float = 0.0,
-    ) -> Boxes:  # fmt: skip
-        """Returns boxes at these places; ``slip`` is that of their motion against their heading."""
-        _, i = self.tree.query(np.stack([x, y], axis=-1))
-        cos, sin = np.cos(self.heading[i]), np.sin(self.heading[i])
-        dx, dy = x - self.middle[i, 0], y - self.middle[i, 1]
-        ahead, t = dx * cos + dy * sin, dy * cos - dx * sin
-        bend = self.curvature[i]
-        along = self.run[i] + ahead / np.maximum(1 - bend * t, LEAST_STRETCH)
-        t = t - bend * ahead**2 / (2 * np.maximum(1 - bend * t, LEAST_STRETCH))
-        way = np.asarray(wrap_angle(heading - np.interp(along, self.run, self.heading)))
-        velocity = speed[:, None] * np.stack([np.cos(way + slip), np.sin(way + slip)], axis=-1)
-        return Boxes(along, t, way, half, velocity)
-
-    def at(self, along: FloatArray, t: FloatArray | float = 0.0) -> FloatArray:
-        """Returns the points (..., 3) ``t`` metres to the left of the line."""
-        within = np.clip(along, 0.0, self.run[-1])
-        x, y, z, heading = (
-            np.interp(within, self.run, each) for each in (*self.middle.T, self.z, self.heading)
-        )
-        cos, sin, beyond = np.cos(heading), np.sin(heading), along - within
-        return np.stack([x + beyond * cos - t * sin, y + beyond * sin + t * cos, z], axis=-1)
-
-    def holds(self, boxes: Boxes) -> BoolArray:
-        """Whether a box reaches into the strip."""
-        return np.asarray(np.abs(boxes.t) - boxes.reach[1] < np.interp(boxes.along, self.run, self.width) / 2)
-
-
-def driven_lane(road: "Road", world: "World") -> Line:
-    """Returns the middle of the lane that the tested car is to follow."""
-    profile = world.profile_of(road)
-    s = np.linspace(0.0, road.length, max(2, int(road.length / ALONG) + 1))
-    return Line(road.at(s, profile.middle(s)), profile.width(s))
 
 
 def _required(gap: FloatArray, rate: FloatArray, its: FloatArray, gained: FloatArray) -> FloatArray:
@@ -229,24 +151,13 @@ def _conflict(own: Boxes, others: Boxes) -> FloatArray:
     overlap along the normals of their sides, if it is before the first at which they cease to."""
     away = np.stack([others.along - own.along, others.t - own.t], axis=-1)
     velocity = others.velocity - own.velocity
-    angle = others.heading - own.heading
-    c, s = np.abs(np.cos(angle)), np.abs(np.sin(angle))
-    first, last = np.zeros(len(away)), np.full(len(away), np.inf)
-    for heading, mine, theirs in (
-        (own.heading, own.half, others.half),
-        (others.heading, others.half, own.half),
-    ):
-        cos, sin = np.cos(heading), np.sin(heading)
-        for normal, reach in (
-            (np.stack([cos, sin], -1), mine[:, 0] + theirs[:, 0] * c + theirs[:, 1] * s),
-            (np.stack([-sin, cos], -1), mine[:, 1] + theirs[:, 0] * s + theirs[:, 1] * c),
-        ):
-            place, rate = (away * normal).sum(-1), (velocity * normal).sum(-1)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                times = np.sort(np.stack([(-reach - place) / rate, (reach - place) / rate]), axis=0)
-            rests, inside = rate == 0, np.abs(place) < reach
-            first = np.maximum(first, np.where(rests, np.where(inside, 0.0, np.inf), times[0]))
-            last = np.minimum(last, np.where(rests, np.where(inside, np.inf, -np.inf), times[1]))
+    place, rate = (np.stack(boxes.along(each.T, own.heading, others.heading)) for each in (away, velocity))
+    reach = np.stack(boxes.reach(own.heading, own.size.T, others.heading, others.size.T))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        times = np.sort(np.stack([(-reach - place) / rate, (reach - place) / rate]), axis=0)
+    rests, inside = rate == 0, np.abs(place) < reach
+    first = np.where(rests, np.where(inside, 0.0, np.inf), times[0]).max(axis=0, initial=0.0)
+    last = np.where(rests, np.where(inside, np.inf, -np.inf), times[1]).min(axis=0)
     is_behind = others.along + others.reach[0] < own.along - own.reach[0]
     return np.asarray(np.where((first <= last) & ~is_behind, first, np.inf))
 
@@ -263,7 +174,7 @@ def _pet(
     stretch, side = (each[own] for each in others.reach)
     way = np.maximum.accumulate(car.along)
     path = np.interp(along, way, car.t)
-    beyond = np.abs(t - path) - side - car.half[0, 1]  # of the strip of the tested car
+    beyond = np.abs(t - path) - side - car.size[0, 1] / 2  # of the strip of the tested car
     best = none
     edges = np.flatnonzero(np.diff(np.concatenate([[False], beyond < 0, [False]])))
     for m, n in zip(edges[::2], edges[1::2] - 1, strict=True):  # the first and the last step over the strip
@@ -284,19 +195,3 @@ def _pet(
         if pet < best[0]:
             best = (float(pet), float(min(leaves, clears)))
     return best
-
-
-def _distance(
-    away: FloatArray, own: FloatArray, half: FloatArray, other: FloatArray, halves: FloatArray
-) -> FloatArray:
-    """Returns the distance between boxes in plan: from a corner of one to the other box, or 0."""
-    least = np.full(len(away), np.inf)
-    for place, mine, its, size, sizes in (
-        (away, own, other, half, halves),
-        (-away, other, own, halves, half),
-    ):
-        corners = place[:, None] + turned(OUTLINE * sizes[:, None], its[:, None])
-        beyond = np.maximum(np.abs(turned(corners, -mine[:, None])) - size[:, None], 0.0)
-        least = np.minimum(least, np.hypot(beyond[..., 0], beyond[..., 1]).min(axis=1))
-    apart = separation(away, own, other, half, halves).max(axis=-1)
-    return np.where(apart < 0, 0.0, least)

@@ -9,7 +9,6 @@ import numpy as np
 from roadgpt.drive.driving_line import (
     EASY_BRAKING,
     FloatArray,
-    StopSigns,
     highest_speeds,
     kept_in_lane,
     line_along,
@@ -109,7 +108,7 @@ class BeamngLike:
         level = replace(line, crest=[0.0] * len(line.crest))
         self._line = line
         self._speed = plan_speed(level, limits, highest_speeds(road, world, line, EASY_BRAKING))
-        self._signs, self._distance = StopSigns(road), KeepingDistance(line)
+        self._distance = KeepingDistance(line, road)
 
     def bend(self, road: "Road", world: "World") -> FloatArray:
         """Returns the curvature of the lane's middle in 1/m at ``stations(road)``, shape ``(n,)``.
@@ -161,4 +160,4 @@ class BeamngLike:
             command = Command(steer, min(self.throttle * error, 1.0), 0.0)
         else:
             command = Command(steer, 0.0, min(-self.brake * error, 1.0))
-        return self._distance.kept(view, self._signs.obeyed(view, command))
+        return self._distance.kept(view, command)

@@ -119,11 +119,7 @@ class LaneCentring:
         if self._by_person:
             for each in {self._person, self._next}:
                 each.start(road, world, seed)
-        s = stations(road)
-        middle = world.profile_of(road).middle(s)
-        self._line = line_along(road, middle)
-        heights = road.at(s, middle)[:, 2].tolist()
-        self._heights = heights + heights[-1:] * (len(self._line.x) - len(heights))
+        self._line = line_along(road, world.profile_of(road).middle(stations(road)))
         self._most = world.driven_speed
         self._speed_limit = world.first_speed if self._is_robot else self._most
         self._lane_limits = lane_limits(road, world, self._line)
@@ -198,7 +194,7 @@ class LaneCentring:
 
     def _speeds_in_sight(self, view: View) -> list[float]:
         line, cos, sin = self._line, math.cos(view.heading), math.sin(view.heading)
-        eye = self._heights[line.place(view.s)[0]] + self.eye_height
+        eye = line.z[line.place(view.s)[0]] + self.eye_height
         highest, distance, out = -math.inf, 0.0, list[float]()
         while distance <= self._sight:
             i, _ = line.place(view.s + distance)
@@ -207,7 +203,7 @@ class LaneCentring:
             if abs(dy * cos - dx * sin) > self.aside:
                 break
             if ahead > LEAST_AHEAD:
-                slope = (self._heights[i] - eye) / ahead
+                slope = (line.z[i] - eye) / ahead
                 if slope < highest:
                     break  # behind a crest
                 highest = slope

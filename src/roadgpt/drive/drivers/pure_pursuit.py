@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from roadgpt.drive.driving_line import (
-    StopSigns,
     highest_speeds,
     line_along,
     pedals,
@@ -47,11 +46,11 @@ class PurePursuit:
         lateral = min(self.risk, 0.95 * world.site.friction)
         limits = DrivingLimits(lateral, lateral, lateral, world.driven_speed)
         self._line, self._speed = line, plan_speed(line, limits, highest_speeds(road, world, line))
-        self._signs, self._distance = StopSigns(road), KeepingDistance(line)
+        self._distance = KeepingDistance(line, road)
 
     def steer(self, view: View) -> Command:
         """Steers towards a point of the lane's middle ahead of the car, and follows the planned speed."""
         line = self._line
         bend = pursuit_curvature(line, view, max(self.headway * view.speed, self.nearest))
         command = Command(math.atan(self.wheelbase * bend), *pedals(line, self._speed, view.s, view.speed))
-        return self._distance.kept(view, self._signs.obeyed(view, command))
+        return self._distance.kept(view, command)

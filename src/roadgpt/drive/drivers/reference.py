@@ -5,7 +5,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from roadgpt.drive.driving_line import StopSigns, highest_speeds, line_along, pedals, stations
+from roadgpt.drive.driving_line import highest_speeds, line_along, pedals, stations
 from roadgpt.drive.keeping_distance import KeepingDistance
 from roadgpt.drive.view import Command, View
 from roadgpt.road.speed_profile import GRAVITY, DrivingLimits, plan_speed
@@ -59,13 +59,13 @@ class Reference:
         lateral = min(self.risk, FRICTION_USED * world.site.friction)
         limits = DrivingLimits(lateral, BRAKING * lateral, TRACTION * lateral, world.driven_speed)
         self._line, self._speed = line, plan_speed(line, limits, highest_speeds(road, world, line))
-        self._signs, self._distance = StopSigns(road), KeepingDistance(line)
+        self._distance = KeepingDistance(line, road)
 
     def steer(self, view: View) -> Command:
         """Steers for the bend ahead and against the lateral error; follows the planned speed."""
         steer, _ = self.steered(view, self._line.curvature)
         command = Command(steer, *pedals(self._line, self._speed, view.s, max(view.vx, 0.0)))
-        return self._distance.kept(view, self._signs.obeyed(view, command))
+        return self._distance.kept(view, command)
 
     def steered(self, view: View, curvature: list[float]) -> tuple[float, float]:
         """Returns the steering angle for the curvature of the car's motion in 1/m at each station of the
