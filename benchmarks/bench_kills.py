@@ -16,11 +16,10 @@ import tempfile
 import time
 from pathlib import Path
 
-from roadgpt.campaign.record import Record
+from roadgpt.campaign.record import STORE, Record
 from roadgpt.campaign.status import status_of
 from roadgpt.errors import UsageError
 from roadgpt.run.folder import finished
-from roadgpt.run.store import STORE
 
 ROAD = "turn x3 | up"
 ROADGPT = [sys.executable, "-c", "from roadgpt.cli import main; main()"]

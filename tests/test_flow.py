@@ -71,9 +71,10 @@ def test_words_become_a_folder(made: tuple[Path, list[dict[str, Any]]]) -> None:
     folder = folder_of(home)
     names = {path.name for path in folder.iterdir()}
     assert names == {
-        "campaign.json",
         "campaign.lock",
-        "runs.sqlite",
+        "campaign.sqlite",
+        "results.csv",
+        "cells.csv",
         "test.0001.json",
         "test.0002.json",
         "generation_stats.csv",

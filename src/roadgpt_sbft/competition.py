@@ -85,9 +85,7 @@ class Competition:
             ) from error
         finally:
             host.stop()
-            if self._is_begun:
-                self.results.write_card(is_finished=True)
-            else:
+            if not self._is_begun:
                 self.results.take_away(LOG)
         if self.ending is not None and not self.ending.is_of_a_generator:
             raise UsageError(self.ending.sentence)
@@ -165,7 +163,7 @@ class Competition:
     def _number(self, asked: Any) -> int:
         """Returns the generator's own number of a test if it is valid and unused, else the next free one."""
         is_number = isinstance(asked, int) and not isinstance(asked, bool) and 0 < asked <= LARGEST_ID
-        numbers = self.results.tests
+        numbers = self.results.numbers
         return asked if is_number and asked not in numbers else max(numbers, default=0) + 1
 
     @property
@@ -228,7 +226,7 @@ def compete(
     check_parts(setup, world)
     request = Request(seed=seed, world=world, setup=setup)
     folder, made = new_folder(experiment, out)
-    results = Results(folder, request, None, 1, made, draw=draw)
+    results = Results(folder, request, made, draw)
     results.describe(experiment)
     return Competition(experiment, request, folder, results)
 

@@ -2,12 +2,11 @@
 
 results/MODULE_CLASS_STAMP/
   test.NNNN.json  generation_stats.csv  oob_stats.csv  experiment_description.csv    the competition's
-  campaign.json  runs/NNNN/  overview.png  generator.log                             RoadGPT's
+  runs/NNNN/  generator.log                             RoadGPT's
 """
 
 import os
 import time
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -15,12 +14,12 @@ import numpy as np
 from pydantic import Field
 
 from roadgpt.brief.model import Frozen
-from roadgpt.campaign.run_folder import Campaign, counted
+from roadgpt.campaign.run_folder import Tables, entries_of, writing
 from roadgpt.errors import UsageError, explained
 from roadgpt.geometry import interpolate
-from roadgpt.run import Run
-from roadgpt.run.atomic import json_text, missing
-from roadgpt.run.execution import features_of, records_of
+from roadgpt.run import Draw, Request, Run
+from roadgpt.run.atomic import json_text, missing, take_away, write_whole
+from roadgpt.run.execution import features_of, records_of, test_name
 from roadgpt.run.folder import RUNS, write_run_folder
 from roadgpt_sbft.tables import SETTINGS, write_settings
 
@@ -71,22 +70,28 @@ def new_folder(experiment: Experiment, out: Path | None = None) -> tuple[Path, t
     return folder, made
 
 
-class Results(Campaign):
+class Results:
     """Writes the result files after each test, so that they are complete at any time."""
+
+    def __init__(self, folder: Path, request: Request, made: tuple[Path, ...], draw: Draw | None) -> None:
+        self.folder, self.request, self._made, self._draw = folder, request, made, draw
+        self.numbers: set[int] = set()
+        """The numbers of the tests that are written."""
+        self._tables = Tables(folder)
 
     def write(self, run: Run) -> dict[str, Any]:
         """Writes the files of a test; returns the content of its ``test.NNNN.json``."""
         test = test_of(run)
-        write_run_folder(run, self.folder, self.draw)
-        text = json_text(test, indent=None)
-        self.keep(replace(counted(run), test_file=text))
-        self.roads = len(self.tests)
+        with writing(self.folder):
+            write_run_folder(run, self.folder, self._draw)
+            write_whole(self.folder / test_name(run.index), json_text(test, indent=None))
+            self.numbers.add(run.index)
+            self._tables.add(entries_of(run))
+            self._tables.write()
         return test
 
     def describe(self, experiment: Experiment) -> None:
         """Writes the settings, and result tables with all counts at 0; called before the first test."""
-        self.write_tables()
-        self.write_card(is_finished=False)
         setup, told = self.request.setup, experiment.model_dump()
         is_beamng = setup.simulator == "beamng"
         homes = {
@@ -96,7 +101,15 @@ class Results(Campaign):
         theirs = {name: value for name, value in told.items() if name in SETTINGS} | homes | {"log_to": LOG}
         ours = {name: value for name, value in told.items() if name not in SETTINGS}
         driven = {"driver": setup.driver, "seed": self.request.seed}
-        write_settings(self.request, theirs, ours | driven, self.folder)
+        with writing(self.folder):
+            self._tables.write()
+            write_settings(self.request, theirs, ours | driven, self.folder)
+
+    def take_away(self, *names: str) -> None:
+        """Removes the tables and the files in ``names``; then the folders that were created for them, if they
+        are empty."""
+        every = (*self._tables.files, *names)
+        take_away((self.folder / name for name in every), (self.folder / RUNS, *self._made))
 
 
 def test_of(run: Run) -> dict[str, Any]:

@@ -83,10 +83,11 @@ class _Session:
             request = Request(words=brief.words, seed=plan.seed, world=world, setup=setup)
             place = self.folder / part.name
             place.parent.mkdir(parents=True, exist_ok=True)
-            folders[part.name] = runs = Campaign.opened(request, brief, plan.roads, place, meter=meter)
-        several = workers if workers > 1 else 0
-        with closing(work_in(self.folder, folders, self.draw, meter, several)) as tests:
-            for name, _ in tests:
+            folders[part.name] = runs = Campaign.opened(
+                request, brief, plan.roads, place, draw=self.draw, meter=meter
+            )
+        with closing(work_in(self.folder, folders, workers, meter=meter)) as tests:
+            for name, _, _ in tests:
                 self.done[name] += 1
                 self.tell(sum(self.done.values()))
         for name, runs in folders.items():

@@ -22,7 +22,7 @@ from roadgpt.campaign import scheduler
 from roadgpt.campaign.executors import WorkerConfig
 from roadgpt.campaign.lifecycle import begin, work
 from roadgpt.campaign.model import Cell, CellBudget, Proposal
-from roadgpt.campaign.record import Record
+from roadgpt.campaign.record import Record, Store
 from roadgpt.campaign.single_test import FinishedTest, Task
 from roadgpt.errors import GivenUpError, RoadGPTError, UsageError
 
@@ -80,7 +80,7 @@ def losing(monkeypatch: pytest.MonkeyPatch, lost: Collection[tuple[str, int]]) -
         said = f"no answer in {cell.name}/{task.number}"
         return replace(ended, result=replace(ended.result, outcome="ERROR", description=said), is_lost=True)
 
-    monkeypatch.setattr(scheduler, "execute", made)
+    monkeypatch.setattr(Store, "run_test", staticmethod(made))
 
 
 def test_three_lost_in_a_row_by_number_end_it_and_its_table_does_not_depend_on_the_workers(

@@ -9,11 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from campaign.quick import Inline, made, plan, put_on_shelves
-from roadgpt.campaign import scheduler
 from roadgpt.campaign.lifecycle import begin, work
 from roadgpt.campaign.model import Cell
 from roadgpt.campaign.plan import Plan
-from roadgpt.campaign.record import Record
+from roadgpt.campaign.record import Record, Store
 from roadgpt.campaign.single_test import FinishedTest, OutOfAllowance, Task
 from roadgpt.campaign.status import status_of
 from roadgpt.chat import ChatSettings, Spent, Usage
@@ -58,7 +57,7 @@ def test_a_limit_is_never_passed_and_hardly_anything_is_left(
     limit = {"max_tokens": TOKENS * questions} if by_tokens else {"max_cost": PRICE * questions}
     with TemporaryDirectory() as name, pytest.MonkeyPatch.context() as patch:
         put_on_shelves(patch.setattr)
-        patch.setattr(scheduler, "execute", paid)
+        patch.setattr(Store, "run_test", staticmethod(paid))
         Inline.rng = np.random.default_rng(order)
         folder = Path(name) / "c"
         begin(with_limits(plan(30), **limit), folder)

@@ -20,11 +20,11 @@ from campaign.jobs import TESTS, is_alive
 from campaign.quick import Inline, InlineJob, plan, put_on_shelves
 from roadgpt.campaign.folder_record import kept_run
 from roadgpt.campaign.lifecycle import begin, work
+from roadgpt.campaign.record import STORE, Store
 from roadgpt.campaign.status import status_of
 from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
-from roadgpt.run import read_run, store
-from roadgpt.run.atomic import alone_in
+from roadgpt.run import read_run
 from rows import rows
 
 QUICK = [sys.executable, str(TESTS / "campaign" / "quick.py")]
@@ -191,8 +191,6 @@ def test_a_campaign_is_written_as_folders_of_runs(driven: Path, tmp_path: Path) 
         (driven, "--to", "runs", "--failures", "leave out --failures"),
         (driven, "--to", "runs", "--speed-limit", 50, "leave out --speed-limit"),
         (driven / "results.csv", "--to", "runs", "is no folder"),
-        (place, "--to", "runs", "has no runs.sqlite, from which its files could be written again"),
-        (place / "runs" / "0001", "--to", "runs", "has no runs.sqlite"),
     ):
         done = roadgpt("export", file, *words)
         assert done.exit_code == 2
@@ -224,7 +222,7 @@ def test_what_cannot_be_is_told_in_a_sentence(driven: Path, words: list[str], se
 
 def of_a_folder(folder: Path) -> dict[str, bytes]:
     """The files of a folder of runs, but for those of the clock."""
-    clock = ("seconds.json", "generation_stats.csv", "campaign.lock", store.STORE)
+    clock = ("seconds.json", "generation_stats.csv", "campaign.lock", STORE)
     files = (path for path in sorted(folder.rglob("*")) if path.is_file() and path.name not in clock)
     return {str(path.relative_to(folder)): path.read_bytes() for path in files}
 
@@ -238,13 +236,10 @@ def test_a_folder_of_roadgpt_run_is_resumed_as_a_campaign_is(tmp_path: Path) -> 
     shutil.copytree(whole, broken)
     (broken / "test.0002.json").unlink()
     (broken / "runs/0003/run.json").write_text("{}")
-    for number in (2, 3):
-        store.remove(broken, number)
-    card = json.loads((broken / "campaign.json").read_text())
-    (broken / "campaign.json").write_text(json.dumps(card | {"is_finished": False}))
-    with alone_in(broken):
-        assert status_of(broken).is_running
-    assert not status_of(broken).is_running
+    with Store.opened(broken) as store:
+        for number in (2, 3):
+            store.reopen("", number, number - 1)
+        store.finish(is_finished=False)
     assert roadgpt("show", broken).stdout.endswith("2 of 3 still to be made\n")
     done = roadgpt("resume", broken, "--json", "--junit", tmp_path / "tests.xml")
     assert done.exit_code == 0, done.output
@@ -261,14 +256,15 @@ def test_a_folder_of_roadgpt_run_is_resumed_as_a_campaign_is(tmp_path: Path) -> 
 def test_what_cannot_be_resumed_is_told(tmp_path: Path) -> None:
     (tmp_path / "road.json").write_text("[[60, 100], [100, 100], [140, 100]]")
     done = roadgpt("run", "a road", "-n", 1, "--no-drive", "--no-plot", "--seed", 7, "--out", tmp_path / "r")
-    card = json.loads((tmp_path / "r/campaign.json").read_text())
-    card["request"]["words"] = ""
-    (tmp_path / "r/campaign.json").write_text(json.dumps(card))
-    done = roadgpt("resume", tmp_path / "r")
-    assert done.exit_code == 2
-    assert "were not made from a description, so nothing can be resumed" in done.output
     done = roadgpt("resume", tmp_path / "r", "--max-cost", "1")
     assert "asks none" in done.output
+    done = roadgpt("resume", tmp_path / "r", "--executor", "ray")
+    assert "made on this machine; leave out --executor" in done.output
+    shutil.copytree(tmp_path / "r", tmp_path / "files")
+    (tmp_path / "files" / STORE).unlink()
+    done = roadgpt("resume", tmp_path / "files")
+    assert done.exit_code == 2
+    assert "has no campaign.sqlite, the record of its tests, so they are shown but not" in done.output
     done = roadgpt("resume", tmp_path / "r", "--driver", "mine.py:Mine")
     assert done.exit_code == 2
 

@@ -1,7 +1,6 @@
 """Campaigns: one folder, whatever happens on the way."""
 
 import csv
-import io
 import json
 import os
 import random
@@ -11,10 +10,10 @@ import sqlite3
 import subprocess
 import sys
 import time
-import zipfile
 from collections.abc import Sequence
 from contextlib import closing
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -22,18 +21,19 @@ from campaign.folder_worker import REQUEST, Deadly, LargeDrawing, perform
 from roadgpt import children
 from roadgpt.brief.model import Brief, Clause, exactly
 from roadgpt.campaign import campaign
-from roadgpt.campaign.folder_record import open_record, write_runs
-from roadgpt.campaign.run_folder import Campaign, work_in
+from roadgpt.campaign.folder_record import open_record
+from roadgpt.campaign.record import Store
+from roadgpt.campaign.run_folder import Campaign, seed_in, work_in, write_runs
 from roadgpt.campaign.scheduler import GIVE_UP
 from roadgpt.errors import DesignError, RoadGPTError, UsageError
 from roadgpt.road import Design, Road, World
-from roadgpt.run import Request, Run, Setup, brief_of, read_run, seed_in, seed_of, store
+from roadgpt.run import Request, Run, Setup, brief_of, read_run, seed_of
 from run.doubles import FreshDesigner, Unable, a_design, folder_of, put_on_shelf
 
 TESTS = Path(__file__).resolve().parents[1]
 BRIEF = Brief(words="A road with a turn!")
 NO_DRIVE = Setup(designer="double", drives=False)
-ON_THE_CLOCK = {"seconds.json", "generation_stats.csv", "runs.sqlite"}  # the last one holds the first
+ON_THE_CLOCK = {"seconds.json", "generation_stats.csv", "campaign.sqlite"}  # the last one holds the first
 
 
 def contents(folder: Path) -> dict[str, bytes]:
@@ -43,6 +43,12 @@ def contents(folder: Path) -> dict[str, bytes]:
         for path in sorted(folder.rglob("*"))
         if path.is_file() and path.name not in ON_THE_CLOCK
     }
+
+
+def is_finished(folder: Path) -> bool:
+    with closing(sqlite3.connect(folder / "campaign.sqlite")) as db:
+        ((said,),) = db.execute("SELECT value FROM meta WHERE name = 'finished'")
+    return bool(said)
 
 
 def table(folder: Path, name: str) -> dict[str, str]:
@@ -68,7 +74,7 @@ def test_every_run_is_on_the_disk_when_it_is_handed_out(designer: FreshDesigner,
     assert [earlier for _, earlier, _ in designer.calls] == [0, 1, 2, 3]
     assert len({run_seed for _, _, run_seed in designer.calls}) == 4
     assert (work.folder / "overview.png").is_file()
-    assert json.loads((work.folder / "campaign.json").read_text())["is_finished"] is True
+    assert is_finished(work.folder)
 
 
 def test_without_a_folder_a_new_one_is_made(
@@ -111,16 +117,14 @@ def test_a_campaign_that_was_left_goes_on(designer: FreshDesigner, tmp_path: Pat
     assert table(parts, "generation_stats.csv")["test_generated"] == "5"
 
 
-def test_files_that_were_taken_away_are_written_again_from_the_record(
-    designer: FreshDesigner, tmp_path: Path
-) -> None:
+def test_roads_whose_files_were_taken_away_are_made_again(designer: FreshDesigner, tmp_path: Path) -> None:
     whole, parts = tmp_path / "whole", tmp_path / "parts"
     for place, n in ((whole, 4), (parts, 3)):
         list(campaign(BRIEF, n, 7, setup=NO_DRIVE, out=place))
     (parts / "test.0002.json").unlink()
     shutil.rmtree(parts / "runs" / "0003")
     again = campaign(BRIEF, 4, 7, setup=NO_DRIVE, out=parts)
-    assert [run.index for run in again] == [4]
+    assert [run.index for run in again] == [2, 3, 4]
     assert contents(whole) == contents(parts)
 
 
@@ -128,14 +132,14 @@ def test_without_the_record_a_folder_is_shown_but_not_continued(
     designer: FreshDesigner, tmp_path: Path
 ) -> None:
     made = list(campaign(BRIEF, 2, 7, setup=NO_DRIVE, out=tmp_path))
-    (tmp_path / "runs.sqlite").unlink()
+    (tmp_path / "campaign.sqlite").unlink()
     before = contents(tmp_path)
-    with pytest.raises(UsageError, match=r"has no runs\.sqlite, .* name another folder, or add --again"):
-        campaign(BRIEF, 3, 7, setup=NO_DRIVE, out=tmp_path)
+    for is_again in (False, True):
+        with pytest.raises(UsageError, match=r"not made by roadgpt run; name another folder"):
+            campaign(BRIEF, 3, 7, setup=NO_DRIVE, out=tmp_path, again=is_again)
     assert contents(tmp_path) == before
     with open_record(tmp_path) as record:
         assert [record.run("", number).design for number in (1, 2)] == [run.design for run in made]
-    assert [run.index for run in campaign(BRIEF, 3, 7, setup=NO_DRIVE, out=tmp_path, again=True)] == [1, 2, 3]
 
 
 @pytest.mark.parametrize("damage", [b"", b"no database", b"SQLite format 3\0" + b"\xff" * 4000])
@@ -143,57 +147,51 @@ def test_a_record_that_is_damaged_is_told_in_a_sentence(
     designer: FreshDesigner, tmp_path: Path, damage: bytes
 ) -> None:
     list(campaign(BRIEF, 2, 7, setup=NO_DRIVE, out=tmp_path))
-    (tmp_path / "runs.sqlite").write_bytes(damage)
-    with pytest.raises(UsageError, match=r"runs\.sqlite cannot be read .* remove it"):
+    (tmp_path / "campaign.sqlite").write_bytes(damage)
+    told = r"campaign\.sqlite (cannot be read|is damaged|was written by another)"
+    with pytest.raises(UsageError, match=told):
         campaign(BRIEF, 3, 7, setup=NO_DRIVE, out=tmp_path)
-    (tmp_path / "runs.sqlite").unlink()
+    (tmp_path / "campaign.sqlite").unlink()
     with open_record(tmp_path) as record:
         assert len(record.tests()) == 2
 
 
-def test_a_record_of_others_writes_nothing_outside_its_runs(designer: FreshDesigner, tmp_path: Path) -> None:
+def test_a_record_of_others_reads_and_writes_nothing_outside_its_runs(
+    designer: FreshDesigner, tmp_path: Path
+) -> None:
     place = tmp_path / "runs-of-others"
     list(campaign(BRIEF, 1, 7, setup=NO_DRIVE, out=place))
-    before = contents(place)
-    with closing(sqlite3.connect(place / "runs.sqlite")) as db, db:
-        (packed,) = db.execute("SELECT files FROM runs").fetchone()
-        archive = io.BytesIO(packed)
-        with zipfile.ZipFile(archive, "a") as files:
-            files.writestr("../../evil.txt", "evil")
-            files.writestr("my_driver.py", "evil")
-        db.execute("UPDATE runs SET files = ?", (archive.getvalue(),))
-        db.execute("INSERT INTO runs VALUES (-1, ?)", (packed,))
-        db.execute("INSERT INTO runs VALUES (99999999999, ?)", (packed,))
-    assert list(write_runs(place, place)) == [place / "runs" / "0001"]
-    assert contents(tmp_path) == {f"runs-of-others/{name}": data for name, data in before.items()}
-    with closing(sqlite3.connect(place / "runs.sqlite")) as db, db:
-        db.execute("UPDATE runs SET files = ? WHERE number = 1", (b"no archive",))
-    with pytest.raises(UsageError, match=r"runs\.sqlite is damaged at run 1"):
-        list(write_runs(place, place))
-    (place / "runs.sqlite").rename(tmp_path / "mine.sqlite")
-    (place / "runs.sqlite").symlink_to(tmp_path / "mine.sqlite")
-    with pytest.raises(UsageError, match=r"runs\.sqlite is a link to somewhere else"):
-        open_record(place)
+    changes = ("number = -1", "number = 99999999999", "cell = '../../evil'", "number = '../evil'")
+    for number, change in enumerate(changes):
+        spoilt = shutil.copytree(place, tmp_path / str(number))
+        with closing(sqlite3.connect(spoilt / "campaign.sqlite")) as db, db:
+            db.execute(f"UPDATE tests SET {change}")
+        with pytest.raises(UsageError, match=r"campaign\.sqlite is damaged"):
+            list(write_runs(spoilt, tmp_path / "copy"))
+    (place / "campaign.sqlite").rename(tmp_path / "mine.sqlite")
+    (place / "campaign.sqlite").symlink_to(tmp_path / "mine.sqlite")
+    with pytest.raises(UsageError, match=r"campaign\.sqlite is a link to somewhere else"):
+        list(campaign(BRIEF, 2, 7, setup=NO_DRIVE, out=place))
 
 
 def test_a_test_has_ended_when_its_row_is_there(
     designer: FreshDesigner, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The process is killed right behind the row, and right before it."""
-    keep = store.keep
+    keep = Store.keep
     for place, is_behind, left in ((tmp_path / "a", True, []), (tmp_path / "b", False, [2])):
         with monkeypatch.context() as patched:
 
-            def killed(campaign: Path, number: int, *rest: object, is_behind: bool = is_behind) -> None:
-                if number == 1 or is_behind:
-                    keep(campaign, number, *rest)
-                if number == 2:
+            def killed(self: Store, ended: Any, *rest: Any, is_behind: bool = is_behind) -> None:
+                numbers = [one.result.number for _, one in ended]
+                if numbers != [2] or is_behind:
+                    keep(self, ended, *rest)
+                if numbers == [2]:
                     raise KeyboardInterrupt
 
-            patched.setattr(store, "keep", killed)
+            patched.setattr(Store, "keep", killed)
             with pytest.raises(KeyboardInterrupt):
                 list(campaign(BRIEF, 2, 7, setup=NO_DRIVE, out=place))
-        assert not (place / "test.0002.json").exists()
         again = campaign(BRIEF, 2, 7, setup=NO_DRIVE, out=place)
         assert [run.index for run in again] == left
     assert contents(tmp_path / "a") == contents(tmp_path / "b")
@@ -276,8 +274,9 @@ def test_roads_that_could_not_be_designed_are_written_once_one_could(
 def start(folder: Path, roads: int, *more: str) -> subprocess.Popen[str]:
     worker = TESTS / "campaign" / "folder_worker.py"
     command = [sys.executable, str(worker), str(folder), str(roads), *more]
+    paths = os.pathsep.join(map(str, (TESTS, TESTS.parent / "src")))
     return subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env={"PYTHONPATH": str(TESTS)}
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env={"PYTHONPATH": paths}
     )
 
 
@@ -373,9 +372,7 @@ def test_impossible_numbers_are_told(designer: FreshDesigner, tmp_path: Path, n:
         list(campaign(BRIEF, n, seed, setup=NO_DRIVE, out=tmp_path))
 
 
-def test_files_that_were_damaged_are_written_again_on_request(
-    designer: FreshDesigner, tmp_path: Path
-) -> None:
+def test_roads_whose_files_were_damaged_are_made_again(designer: FreshDesigner, tmp_path: Path) -> None:
     whole, parts, copy = tmp_path / "whole", tmp_path / "parts", tmp_path / "copy"
     for place in (whole, parts):
         list(campaign(BRIEF, 3, 7, setup=NO_DRIVE, out=place))
@@ -383,11 +380,14 @@ def test_files_that_were_damaged_are_written_again_on_request(
     (parts / "runs" / "0003" / "run.json").write_text((parts / "runs" / "0002" / "run.json").read_text())
     (parts / "oob_stats.csv").unlink()
     again = campaign(BRIEF, 3, 7, setup=NO_DRIVE, out=parts)
-    assert again.kept == (1, 2, 3)
-    assert list(again) == []
-    assert len(list(write_runs(parts, copy))) == len(list(write_runs(parts, parts))) == 3
+    assert again.kept == (2,)
+    assert [run.index for run in again] == [1, 3]
     assert contents(whole) == contents(parts)
-    assert contents(copy) == contents(whole)
+    assert len(list(write_runs(parts, copy))) == 3
+    of_store = {"results.csv", "cells.csv", "campaign.lock"}
+    assert contents(copy).items() >= {n: t for n, t in contents(whole).items() if n not in of_store}.items()
+    with pytest.raises(UsageError, match="holds runs already"):
+        list(write_runs(parts, copy))
 
 
 def test_a_campaign_cannot_shrink_below_the_roads_that_are_there(
@@ -401,23 +401,6 @@ def test_a_campaign_cannot_shrink_below_the_roads_that_are_there(
     assert [run.index for run in campaign(BRIEF, 6, 7, setup=NO_DRIVE, out=tmp_path)] == [6]
 
 
-DAMAGE: dict[str, object] = {"request": [], "roads": "many", "is_finished": 7, "format": 2}
-
-
-@pytest.mark.parametrize("key", [*DAMAGE, "gone", "list"])
-def test_a_card_that_is_damaged_is_told_in_a_sentence(
-    designer: FreshDesigner, tmp_path: Path, key: str
-) -> None:
-    list(campaign(BRIEF, 1, 7, setup=NO_DRIVE, out=tmp_path))
-    card = json.loads((tmp_path / "campaign.json").read_text())
-    damaged = {"gone": {"format": 1, "request": card["request"]}, "list": [card]}
-    text = json.dumps(damaged.get(key) or card | {key: DAMAGE[key]})
-    (tmp_path / "campaign.json").write_text(text)
-    for n in (1, 2):
-        with pytest.raises(UsageError, match="damaged or was written by another version"):
-            campaign(BRIEF, n, 7, setup=NO_DRIVE, out=tmp_path)
-
-
 def test_what_another_process_made_since_the_folder_was_opened_is_not_made_again(
     designer: FreshDesigner, tmp_path: Path
 ) -> None:
@@ -428,7 +411,7 @@ def test_what_another_process_made_since_the_folder_was_opened_is_not_made_again
     assert table(tmp_path, "generation_stats.csv")["test_generated"] == "3"
 
 
-def test_a_campaign_that_was_stopped_before_it_had_a_card_can_begin_again(
+def test_a_campaign_that_was_stopped_before_it_had_a_road_can_begin_again(
     designer: FreshDesigner, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(self: Path, data: bytes) -> int:
@@ -453,7 +436,7 @@ def test_earlier_designs_come_in_their_order_also_when_a_gap_is_filled(
         return Run(request, index, index, design=a_design(index), road=road)
 
     list(folder_of(request, 4, tmp_path, one, patch=monkeypatch.setattr))
-    store.remove(tmp_path, 2)
+    (tmp_path / "test.0002.json").unlink()
     list(folder_of(request, 5, tmp_path, one, patch=monkeypatch.setattr))
     assert seen == {1: [], 2: [1], 3: [1, 2], 4: [1, 2, 3], 5: [1, 2, 3, 4]}
 
@@ -468,21 +451,21 @@ def made_of(home: Path, workers: int, roads: int = 4) -> dict[str, bytes]:
         for name, text in words.items()
     }
     seen, before = [], {*children._running}
-    for name, ended in work_in(home, folders, workers=workers):
-        seen.append((name, ended.result.number))
-        assert (home / name / f"test.{ended.result.number:04d}.json").is_file()
-        assert (ended.run is None) == bool(workers)
-        if workers and len(seen) == 2:
+    for name, number, run in work_in(home, folders, workers):
+        seen.append((name, number))
+        assert (home / name / f"test.{number:04d}.json").is_file()
+        assert (run is None) == (workers > 1)
+        if workers > 1 and len(seen) == 2:
             os.kill(({*children._running} - before).pop().pid, signal.SIGKILL)
     for name in words:
-        assert [number for each, number in seen if each == name] == [*range(1, roads + 1)]
-        assert json.loads((home / name / "campaign.json").read_text())["is_finished"] is True
+        assert sorted(number for each, number in seen if each == name) == [*range(1, roads + 1)]
+        assert is_finished(home / name)
     assert {*children._running} <= before
     return {name: data for name, data in contents(home).items() if not name.startswith("workers.log")}
 
 
 def test_folders_do_not_depend_on_workers_nor_on_the_death_of_one(tmp_path: Path) -> None:
-    alone = made_of(tmp_path / "alone", 0)
+    alone = made_of(tmp_path / "alone", 1)
     assert len([name for name in alone if name.endswith("road.json")]) == 8
     assert made_of(tmp_path / "killed", 2) == alone
 
@@ -497,7 +480,7 @@ def test_a_folder_that_no_road_fits_is_removed_and_the_others_are_made(
         )
         for name, seed in (("able", 7), ("unable", 8))
     }
-    tests = [name for name, _ in work_in(tmp_path, folders)]
+    tests = [name for name, _, _ in work_in(tmp_path, folders)]
     assert tests == ["able"] * 4
     assert folders["able"].failure == ""
     assert "9 hairpins" in folders["unable"].failure
@@ -511,11 +494,12 @@ def test_workers_that_die_over_a_road_leave_one_error(
     monkeypatch.setattr("roadgpt.campaign.workers.MOST_DEATHS", 1)
     setup = Setup(reader="plan", drives=False)
     request = Request(words="straight | turns=0", seed=1, setup=setup)
-    folder = Campaign.opened(request, brief_of(request.words, setup=setup), 2, tmp_path / "c")
-    ended = [one.result for _, one in work_in(tmp_path, {"c": folder}, Deadly(), workers=1)]
-    assert [one.outcome for one in ended] == ["VALID", "ERROR"]
-    assert "given up: 1 workers ended over it" in ended[1].description
-    assert read_run(tmp_path / "c" / "runs" / "0002").description == ended[1].description
+    folder = Campaign.opened(
+        request, brief_of(request.words, setup=setup), 2, tmp_path / "c", draw=Deadly(), workers=2
+    )
+    ended = {run.index: run for run in folder}
+    assert {number: run.outcome for number, run in ended.items()} == {1: "VALID", 2: "ERROR"}
+    assert "given up: 1 workers ended over it" in ended[2].description
 
 
 def test_a_brief_that_was_written_by_hand_is_enough(tmp_path: Path) -> None:
@@ -523,6 +507,6 @@ def test_a_brief_that_was_written_by_hand_is_enough(tmp_path: Path) -> None:
     brief = Brief(clauses=(Clause(kind="turn", count=exactly(2)),))
     made = list(campaign(brief, 2, 3, World(), Setup(drives=False), tmp_path / "out"))
     assert [run.outcome for run in made] == ["VALID", "VALID"]
-    store.remove(tmp_path / "out", 2)
+    shutil.rmtree(tmp_path / "out" / "runs" / "0002")
     again = list(campaign(brief, 2, 3, World(), Setup(drives=False), tmp_path / "out"))
     assert [run.design for run in again] == [made[1].design]

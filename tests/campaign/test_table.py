@@ -28,7 +28,7 @@ def slowly(record: Record) -> str:
     features = record.feature_names()
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
-    table.writerow([*COLUMNS, *features])
+    table.writerow([*COLUMNS, *(f"'{each}" if computes(each) else each for each in features)])
     for cell, one in ((name, one) for name in record.names() for one in record.results(name)):
         asked = (one.batch, one.proposal.origin, "", "", seed_of_driver(one.number, one.proposal))
         margin = None if one.cause == "collision" else one.margin

@@ -22,7 +22,7 @@ from roadgpt.chat import (
 from roadgpt.errors import UsageError
 
 QUESTION = [Message(role="user", text="How far?")]
-CLOCK = ("seconds.json", "generation_stats.csv", "runs.sqlite")  # the only files that another day changes
+CLOCK = ("seconds.json", "generation_stats.csv", "campaign.sqlite")  # the only files that another day changes
 
 
 @pytest.fixture

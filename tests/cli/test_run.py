@@ -134,7 +134,7 @@ def test_nothing_that_could_be_designed_ends_with_3(monkeypatch: pytest.MonkeyPa
     def cannot(*_: object, **__: object) -> None:
         raise DesignError("no road fits; ask for less")
 
-    monkeypatch.setattr(single_test, "perform", cannot)
+    monkeypatch.setattr(single_test, "drafted", cannot)
     result = invoke(WORDS, "-n", "5", "--no-plot", "--out", "here")
     assert result.exit_code == 3
     assert "roadgpt: no road fits; ask for less" in result.stderr

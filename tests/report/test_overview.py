@@ -11,12 +11,15 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.transforms import Bbox
 
+from roadgpt.brief import Brief
+from roadgpt.campaign.model import Cell
+from roadgpt.campaign.plan import Plan
+from roadgpt.campaign.record import Store
 from roadgpt.errors import UsageError
 from roadgpt.report import overview
 from roadgpt.report.overview import Thumbnail, _thumbnail, page_of, pages
 from roadgpt.road import World
 from roadgpt.run import Request, Setup
-from roadgpt.run.folder import CARD, Card
 
 OUTCOMES = ["PASS", "FAIL", "INVALID", "NOT TESTED", "ERROR", None]
 
@@ -125,7 +128,8 @@ def test_the_page_counts_outcomes_in_words(tmp_path: Path) -> None:
     campaign(tmp_path, 5)
     world, setup = World().changed(map_size=200.0, oracle="sbft"), Setup(driver="beamng_like")
     request = Request(words="a $strange$ road", seed=4, world=world, setup=setup)
-    (tmp_path / CARD).write_text(Card(request=request, roads=5, is_finished=True).model_dump_json())
+    cell = Cell("", request, Brief(words=request.words), "words", None, keeps_runs=True)
+    Store.new(tmp_path, Plan.of(request, 5).model_dump_json(), [cell], {"beamng_like": {}}).close()
     assert overview(tmp_path)
     (drawn,) = pages(tmp_path)
     about = {text.get_text() for text in drawn.axes[0].texts}

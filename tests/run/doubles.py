@@ -1,14 +1,16 @@
 """Small stand-ins for parts: designers that can be told what to do, and roads that cost nothing."""
 
 from collections.abc import Callable, Sequence
+from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
 
 from roadgpt import design, plugins
 from roadgpt.brief.model import Brief
-from roadgpt.campaign import Campaign, run_folder
+from roadgpt.campaign import Campaign
 from roadgpt.campaign.model import Cell
 from roadgpt.campaign.single_test import Task
 from roadgpt.chat import Meter
@@ -70,6 +72,11 @@ class Unable(FreshDesigner):
         return super().draft(brief, world, notes, earlier, seed)
 
 
+def _place(name: str) -> tuple[ModuleType, str]:
+    module, _, attribute = name.rpartition(".")
+    return import_module(module), attribute
+
+
 def folder_of(
     request: Request,
     roads: int,
@@ -80,12 +87,16 @@ def folder_of(
 ) -> Campaign:
     """A campaign whose Runs ``one`` makes, of a road's number and the designs before it."""
 
-    def run_test(task: Task, cell: Cell, earlier: Sequence[Sequence[Design]], meter: Meter) -> Run:
-        return one(task.number, [design for block in earlier for design in block])
+    def drafted(task: Task, cell: Cell, earlier: Sequence[Design], meter: Meter) -> Run:
+        return one(task.number, earlier)
 
-    (patch or (lambda name, value: setattr(run_folder, name.rpartition(".")[2], value)))(
-        "roadgpt.campaign.run_folder.run_test", run_test
-    )
+    def run_test(task: Task, *rest: object) -> Run:
+        assert task.drafted is not None
+        return task.drafted
+
+    put = patch or (lambda name, value: setattr(*_place(name), value))
+    put("roadgpt.campaign.scheduler.draft", drafted)
+    put("roadgpt.campaign.run_folder.run_test", run_test)
     return Campaign.opened(request, Brief(words=request.words), roads, out, draw=draw)
 
 

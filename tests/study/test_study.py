@@ -29,7 +29,7 @@ CLOCK = (
     "seconds.json",
     "generation_stats.csv",
     "workers.log",
-    "runs.sqlite",
+    "campaign.sqlite",
 )  # what the clock and workers write
 QUICK = Setup(reader="plan", drives=False)
 ANY = "| turns=1.."  # a road of any kind

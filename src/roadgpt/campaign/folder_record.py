@@ -4,32 +4,22 @@ stored or by driving its road again."""
 import json
 import sqlite3
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from roadgpt.campaign.model import Cell, NumberedTest, Result
-from roadgpt.campaign.record import STORE, Record, no_road, no_tests
-from roadgpt.campaign.run_folder import Campaign, FolderStore, counted, finished_run, writing
+from roadgpt.campaign.model import GIVEN, Cell, CellBudget, NumberedTest, Result
+from roadgpt.campaign.record import SCHEMA, STORE, Record, no_road, no_tests
+from roadgpt.campaign.single_test import finished_run
 from roadgpt.errors import UsageError
-from roadgpt.road import Road
-from roadgpt.run import Request, Run, Setup, prove, read_run, store, write_run
-from roadgpt.run.atomic import alone_in, is_locked
-from roadgpt.run.folder import (
-    CARD,
-    RUNS,
-    finished,
-    finished_run_in,
-    is_run,
-    read_card,
-    run_folder,
-    write_again,
-)
+from roadgpt.run import Request, Run, Setup, prove, read_run
+from roadgpt.run.folder import RUNS, finished, is_run, run_folder
 
 
 def is_store(folder: Path) -> bool:
-    """Returns whether a folder holds a campaign with a store; False for a folder of runs."""
+    """Returns whether a folder holds a campaign, or runs, with a store."""
     return (folder / STORE).is_file()
 
 
@@ -53,79 +43,82 @@ def setups_of(folder: Path) -> list[Setup]:
         return [cell.request.setup for cell in record.cells()]
 
 
-class FolderRecord(FolderStore):
-    """The tests in a folder of runs, open for reading; all Runs are read when the tables are first
-    queried."""
-
-    has_run = "1"
+class FolderRecord(Record):
+    """The tests in a folder of runs without a store, or of one Run, open for reading: the Runs are entered
+    into tables in memory when these are first queried."""
 
     def __init__(self, folder: Path) -> None:
-        """Opens a folder of runs, or the folder of one Run."""
-        self._is_entered, self._home = False, folder
+        super().__init__(folder / STORE, sqlite3.connect(":memory:", isolation_level=None))
+        self._is_entered, self.keeps_runs = False, True
         if is_run(folder):
             self._places = {read_run(folder).index: folder}
         else:
             self._places = {number: run_folder(folder, number) for number in finished(folder)}
-        card = read_card(folder) if (folder / CARD).is_file() else None
-        first = next(iter(self._places), None)
-        brief, request, versions = None, card and card.request, card and card.versions
-        if first is not None:
-            try:
-                run = self.run("", first)
-                brief, request, versions = run.brief, request or run.request, versions or run.versions
-            except UsageError:
-                if request is None:
-                    raise
-        roads = card.roads if card else max(len(self._places), 1)
-        runs = Campaign(folder, request or Request(), brief, roads)
-        super().__init__(folder, {}, [runs.cell("")])
-        self._db.execute("INSERT INTO meta VALUES ('versions', ?)", (json.dumps({**(versions or {})}),))
-        if card is None or card.is_finished:
-            self.finish()
+        first = self._first_run()
+        brief, request = (first.brief, first.request) if first else (None, Request())
+        self._versions = first.versions if first else {}
+        tests = CellBudget(tests=max(len(self._places), 1))
+        self._cell_of_all = Cell("", request, brief, GIVEN, None, {}, tests, keeps_runs=True)
+
+    def _first_run(self) -> Run | None:
+        for number in self._places:
+            with suppress(UsageError):  # who asks for this test is told
+                return self.run("", number)
+        return None
 
     def _execute(self, sql: str, values: Sequence[Any]) -> sqlite3.Cursor:
         if not self._is_entered:
             self._is_entered = True
-            ended = {number: finished_run(self.run("", number)) for number in self._places}
-            self._enter("", ended)
+            ended = [finished_run(self.run("", number)) for number in self._places]
+            now, took = time.time(), sum(one.seconds.total for one in ended)
+            self._db.executescript(SCHEMA)
+            meta = {"finished": "yes", "versions": json.dumps({**self._versions})}
+            self._db.executemany("INSERT INTO meta VALUES (?, ?)", meta.items())
+            self._db.execute("INSERT INTO cells(name, cell) VALUES ('', '')")
+            self._db.execute("INSERT INTO sittings VALUES (?, ?, 1, 1, 0, 0)", (now - took, now))
+            for one in ended:
+                its = one.result
+                self.add_batch("", its.number - 1, its.number, [its.proposal])
+            self.keep([("", one) for one in ended])
             self._db.execute("UPDATE tests SET ended = NULL")  # the files do not record when a test ended
-            now, took = time.time(), sum(one.seconds.total for one in ended.values())
-            is_over = not is_locked(self.folder)
-            self._db.execute("INSERT INTO sittings VALUES (?, ?, 1, ?, 0, 0)", (now - took, now, is_over))
         return super()._execute(sql, values)
 
     def total(self) -> int | None:
-        """Returns the number of roads requested; without ``campaign.json``, the number of runs."""
-        return self.cell("").budget.tests
+        """Returns the number of runs."""
+        return len(self._places)
+
+    def names(self) -> list[str]:
+        """Returns the name of its only cell, which is empty."""
+        return [""]
+
+    def cells(self) -> list[Cell]:
+        """Returns its only cell."""
+        return [self._cell_of_all]
+
+    def cell(self, name: str) -> Cell:
+        """Returns its only cell; raises UsageError if there is none of that name."""
+        return super().cell(name) if name else self._cell_of_all
 
     def tests(self, cell: str = "", which: str | None = None) -> list[NumberedTest]:
-        """Returns the names of tests that have ended; see ``Record.tests``."""
+        """Returns the names of its tests; see ``Record.tests``."""
         if which is not None:
             return super().tests(cell, which)
         return [NumberedTest("", number) for number in self._places]
 
     def check_ended(self, cell: str, number: int) -> None:
         """Raises UsageError if the folder has no finished run of this number."""
-        del cell
         if number not in self._places:
-            there = [*self._places]
-            its = f"its runs are {there[0]} to {there[-1]}" if there else "it has no runs yet"
-            raise UsageError(f"there is no run {number} in {self.folder}; {its}")
+            super().check_ended(cell, number)
 
     def run(self, cell: str, number: int, has_drive: bool = True) -> Run:
         """Returns the Run of a test, always with its drive; raises UsageError if it cannot be read."""
+        del has_drive
         self.check_ended(cell, number)
-        place = self._places[number]
-        return read_run(place) if place == self._home else finished_run_in(self._home, number)
+        return read_run(self._places[number])
 
     def result(self, cell: str, number: int) -> Result:
         """Returns the result of one test; raises UsageError if its Run cannot be read."""
         return finished_run(self.run(cell, number)).result
-
-    def road(self, cell: Cell, result: Result) -> tuple[Road, Request] | None:
-        """Returns the road of a test that has ended, and its request; None if the test has no road."""
-        run = self.run(cell.name, result.number)
-        return None if run.road is None else (run.road, run.request)
 
     def seed(self, result: Result) -> int:
         """Returns the driver's seed in a test."""
@@ -137,7 +130,8 @@ def kept_run(folder: Path, cell: str, number: int, has_drive: bool = True) -> Ru
 
     The road is built from the stored design. The drive, unless it is left out, is the stored one, with
     positions exact to half a millimetre; outcome, margin and the place of a failure are those recorded.
-    ``cell`` is empty in a folder of runs or of one run, whose Runs always have their drives."""
+    ``cell`` is empty in a folder of runs or of one run, whose Runs are as they were, and have their
+    drives."""
     with open_record(folder) as record:
         return record.run(cell, number, has_drive)
 
@@ -153,40 +147,6 @@ def run_again(folder: Path, cell: str, number: int) -> tuple[Run, Result]:
     despite = result.margin is not None or result.outcome != "INVALID"
     run = prove(kept.road, kept.seed, kept.world, kept.request.setup, number, kept.brief, despite)
     return replace(run, request=kept.request, design=kept.design), result
-
-
-def write_runs(folder: Path, out: Path) -> Iterator[Path]:
-    """Writes the tests of a campaign, or of a folder of runs, as a folder of runs ``out`` with its tables; of
-    a campaign, a folder in ``out`` for each cell. If ``out`` is the folder of runs itself, what is missing or
-    damaged there becomes what it was, but for the pictures. Yields the folder of each Run when it is written.
-    Raises UsageError if other runs are in ``out``, or it is a folder that has no record."""
-    with open_record(folder) as record:
-        for cell in record.cells():
-            place = out / cell.name
-            names, versions = record.tests(cell.name), record.versions(cell.request.setup.driver)
-            roads = cell.budget.tests or len(names)
-            runs = Campaign(place, cell.request, cell.brief, roads, versions=versions)
-            is_again = place.exists() and place.samefile(folder)
-            if is_again and not store.is_kept(folder):
-                raise UsageError(
-                    f"{folder} has no {store.STORE}, from which its files could be written again; "
-                    "name another folder with --out"
-                )
-            if (place / CARD).is_file() and not is_again:
-                raise UsageError(f"{place} holds runs already; name another folder")
-            with alone_in(place), writing(place):
-                for _, number in names:
-                    run = record.run(cell.name, number)
-                    if isinstance(record, FolderRecord) and store.is_kept(folder):
-                        write_again(folder, number, place)
-                    else:
-                        write_run(run, place)
-                    runs.count(counted(run))
-                    yield run_folder(place, number)
-                runs.write_settings()
-                runs.write_tables()
-                if not is_again:
-                    runs.write_card(is_finished=True)
 
 
 def is_same(run: Run, result: Result) -> bool:

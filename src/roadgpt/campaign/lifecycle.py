@@ -13,7 +13,7 @@ from pathlib import Path
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
 from roadgpt.campaign.csv_tables import CELLS, RESULTS, write_tables
-from roadgpt.campaign.folder_record import has_tests, is_store, open_record
+from roadgpt.campaign.folder_record import has_tests, is_store
 from roadgpt.campaign.given import FOLDER as ROADS
 from roadgpt.campaign.given import changes, content_of, given_roads, write_roads
 from roadgpt.campaign.plan import Plan
@@ -28,11 +28,10 @@ from roadgpt.chat.config import key_for
 from roadgpt.design.room import world_for
 from roadgpt.drive import refuse_ignored
 from roadgpt.drive.loading import require_permission
-from roadgpt.errors import UsageError, command_line
+from roadgpt.errors import UsageError
 from roadgpt.road import World
 from roadgpt.run import Draw, brief_of
 from roadgpt.run.atomic import LOCK, alone_in, is_new, refuse_links, set_aside, sweep, take_away
-from roadgpt.run.folder import read_card
 from roadgpt.run.versions import Versions, versions_now
 
 USER_NAMES = {
@@ -107,6 +106,8 @@ def _briefs(plan: Plan) -> tuple[dict[str, Brief], Spent]:
 
 def _same(plan: Plan, folder: Path, versions: dict[str, Versions]) -> None:
     with Store.opened(folder) as store:
+        if store.keeps_runs:
+            raise UsageError(f"{folder} holds runs of 'roadgpt run'; name another folder")
         there = store.plan()
         kept = there.essence()
         now = {road.name: road.source for road in given_roads(plan.settings)}
@@ -140,19 +141,21 @@ def work(
     """Runs the remaining tests of a campaign, or of a folder that ``roadgpt run`` made, lazily: they run
     while the caller iterates. Yields the number of tests with each outcome after every group of results.
 
-    ``chat`` replaces the stored settings of the language model, whose limits may differ. The roads of a
-    folder of runs are made one after another, and ``draw`` draws them. With ``again``, the results are set
-    aside first."""
+    ``chat`` replaces the stored settings of the language model, whose limits may differ. ``draw`` draws the
+    roads of a folder of runs. With ``again``, the results are set aside first."""
     kind: Callable[[WorkerConfig], Executor] = plugins.find("executors", executor)
     if not is_store(folder):
-        yield from _make_runs(folder, chat, draw, again)
+        raise cannot_go_on(folder) if has_tests(folder) else no_tests(folder)
+    with Record.opened(folder) as record:
+        keeps_runs, plan = record.keeps_runs, record.plan()
+    if keeps_runs:
+        if executor != "processes":
+            raise UsageError("the roads of 'roadgpt run' are made on this machine; leave out --executor")
+        yield from _make_runs(folder, workers, chat, draw, again)
         return
     if again:
-        with Record.opened(folder) as record:
-            plan = record.plan()
         begin(plan, folder, again, [content_of(road, folder) for road in given_roads(plan.settings)])
     with alone_in(folder), Store.opened(folder) as store:
-        plan = store.plan()
         if chat is not None:
             plan = plan.model_copy(update={"chat": chat})
             store.set_plan(plan.model_dump_json())
@@ -164,30 +167,33 @@ def work(
                 _sweep(folder, store)
                 setups = tuple(dict.fromkeys(request.setup for request, _ in plan.requests()))
                 staff = WorkerConfig(workers, WorkerSetup(setups), plan.patience, folder / LOG, address)
-                yield from Scheduler(store, staff, kind, plan.chat).run()
+                scheduler = Scheduler([store], staff, kind, plan.chat)
+                for _ in scheduler.run():
+                    yield scheduler.outcomes
         if not is_finished or not all((folder / name).is_file() for name in (RESULTS, CELLS)):
             with refusals(folder, store):
                 write_tables(store, folder)
                 store.finish()
 
 
+def cannot_go_on(folder: Path) -> UsageError:
+    """Returns the error for files of runs without a store."""
+    return UsageError(
+        f"{folder} has no {STORE}, the record of its tests, so they are shown but not continued; make them "
+        "anew in another folder"
+    )
+
+
 def _make_runs(
-    folder: Path, chat: ChatSettings | None, draw: Draw | None, again: bool
+    folder: Path, workers: int, chat: ChatSettings | None, draw: Draw | None, again: bool
 ) -> Iterator[Counter[str]]:
-    if not has_tests(folder):
-        raise no_tests(folder)
-    card = read_card(folder)
-    request = card.request
-    with open_record(folder) as record:
-        words = record.cell("").brief or request.words
-    if not request.words:
-        raise UsageError(
-            f"the roads in {folder} were not made from a description, so nothing can be resumed; "
-            f"to see them: {command_line('show', folder)}"
-        )
+    with Record.opened(folder) as record:
+        cell = record.cell("")
+    request, roads = cell.request, cell.budget.most
     setup = request.setup if chat is None else request.setup.model_copy(update={"chat": chat})
     require_permission(setup.driver)
-    made = campaign(words, card.roads, request.seed, request.world, setup, folder, draw, again=again)
+    words = cell.brief or request.words
+    made = campaign(words, roads, request.seed, request.world, setup, folder, draw, None, again, workers)
     outcomes = Counter[str](one.result.outcome for one in made.tests.values())
     for run in made:
         outcomes[run.outcome] += 1

@@ -76,8 +76,8 @@ class Proposal:
 
     design: Design | GivenRoad | None
     """The road's design, or a road that was given. None: a worker drafts the road from the cell's Brief, with
-    ``seed`` and the number of the test. The drafted road differs from at least the latest 1500 designs (from
-    all designs if ``Cell.in_sequence``) in the batches whose results the generator has received."""
+    ``seed`` and the number of the test. The drafted road differs from at least the latest 1500 designs in the
+    batches whose results the generator has received; if ``Cell.keeps_runs``, from all earlier ones."""
     seed: int
     """Seed of the driver. If ``design`` is None, one seed for both draft and driver is derived from this seed
     and the number of the test."""
@@ -146,9 +146,8 @@ class Cell:
     settings: Mapping[str, Any] = field(default_factory=dict)
     """The generator's settings; the documentation of each generator describes them."""
     budget: CellBudget = UNLIMITED
-    in_sequence: bool = False
-    """Whether each test is proposed only after the one before has ended, so that every draft differs from all
-    earlier ones, as in ``roadgpt run``."""
+    keeps_runs: bool = False
+    """Whether each test has a folder of files, and differs from all earlier ones, as in ``roadgpt run``."""
 
     @property
     def points(self) -> tuple[tuple[Scenario, ...], int]:

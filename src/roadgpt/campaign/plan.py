@@ -89,6 +89,16 @@ class Plan(PlanChoices):
     left_out: Mapping[str, str] = Field(default_factory=dict)
     """Why a file there is not tested, by its name."""
 
+    @classmethod
+    def of(cls, request: Request, tests: int) -> "Plan":
+        """Returns the Plan of the tests of one Request."""
+        setup = request.setup
+        named = ("reader", "rules", "geometry", "keep_driving", "drives", "chat")
+        lists = {f"{name}s": (getattr(setup, name),) for name in ("designer", "driver", "simulator")}
+        alike = {name: getattr(setup, name) for name in named}
+        own = {"prompts": (request.words,), "seeds": (request.seed,), "world": request.world}
+        return cls(budget=CellBudget(tests=tests), **own | lists | alike)
+
     def essence(self) -> "Plan":
         """Returns the Plan without the settings that may change when the campaign is resumed."""
         chat = self.chat and self.chat.essence()

@@ -1,4 +1,5 @@
-"""The file of a campaign: its tables, in SQLite, and what is read from them and written to them.
+"""The file of a campaign, or of a folder of runs: its tables, in SQLite, and what is read from them and
+written to them.
 
     meta      format, plan, versions (of each driver's tests), and whether the campaign is finished
     cells     the settings of each cell; how long it has taken; why it was closed early
@@ -16,14 +17,17 @@ column ``ended`` and all columns after it depend on the clock.
 A store from another person or from a bad disk may contain anything: text in place of a number, a number that
 is not finite, or a cell whose name is a path. When a store is opened, all tables except ``details`` are
 checked; this takes a second for a million tests. The table ``details`` holds long texts, such as designs, and
-each of its rows is checked when it is read."""
+each of its rows is checked when it is read.
+
+A folder of runs is a campaign of one cell without a name, which keeps runs: each test has a folder of files,
+written before its row, and read as they are. They hold its drive, so ``traces`` is empty."""
 
 import json
 import math
 import sqlite3
 import time
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
@@ -35,19 +39,25 @@ from pydantic import TypeAdapter
 
 from roadgpt.campaign.given import content_of, source_of
 from roadgpt.campaign.model import Cell, GivenRoad, NumberedTest, Proposal, Result
-from roadgpt.campaign.single_test import OF_VERDICT, FinishedTest, Task, seed_of_driver
+from roadgpt.campaign.single_test import (
+    OF_VERDICT,
+    FinishedTest,
+    OutOfAllowance,
+    Task,
+    execute,
+    seed_of_driver,
+)
 from roadgpt.chat import Spent
 from roadgpt.check import inspect
 from roadgpt.drive import Drive
 from roadgpt.errors import RoadGPTError, UsageError, command_line
 from roadgpt.network import made_from
-from roadgpt.reading import json_of
+from roadgpt.reading import LARGEST, json_of
 from roadgpt.road import Design, Road
-from roadgpt.run import Request, Run
+from roadgpt.run import Request, Run, read_run
 from roadgpt.run.atomic import refuse_links, to_bytes
-from roadgpt.run.folder import keep_ground
+from roadgpt.run.folder import keep_ground, run_folder
 from roadgpt.run.model import Outcome, permissions
-from roadgpt.run.store import connected
 from roadgpt.run.versions import Versions, joined, still
 from roadgpt.verdict import Verdict, judge
 from roadgpt.verdict.verdict import DEPARTURES
@@ -122,7 +132,12 @@ def _cells() -> TypeAdapter[Cell]:
     return TypeAdapter(Cell)
 
 
+def _text_of(cell: Cell) -> str:
+    return _cells().dump_json(cell).decode()
+
+
 META = ("finished", "plan", "versions")
+BUSY_SECONDS = 30.0  # to wait for another process that locks the file
 _checked: set[tuple[str, int]] = set()
 BUSY = {
     sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_FULL, sqlite3.SQLITE_NOMEM,
@@ -173,7 +188,7 @@ CREATE INDEX waiting ON tests(cell, number) WHERE outcome IS NULL;
 """
 
 
-NAME = "{0} GLOB 'c[0-9]*' AND {0} NOT GLOB '*[^c0-9]*'"
+NAME = "({0} = '' OR {0} GLOB 'c[0-9]*' AND {0} NOT GLOB '*[^c0-9]*')"
 OF_TYPE = {
     "TEXT": "typeof({0}) = 'text'",
     "INTEGER": "typeof({0}) = 'integer' AND {0} >= 0",
@@ -250,15 +265,9 @@ def no_tests(folder: Path) -> UsageError:
 
 
 class Record:
-    """The tables in a database: in the file of a campaign, or in memory (``FolderStore``)."""
+    """The tables in a database: in the file of a campaign, or in memory (``FolderRecord``)."""
 
     mode = "ro"  # in which ``opened`` opens the file
-    has_run = "design IS NOT NULL"
-    """The SQL condition that selects the tests whose Runs the method ``run`` can return."""
-
-    group_seconds = 1.0
-    """Longest time in seconds that a result waits to be stored; if the process is killed, the results of
-    this time are lost."""
 
     def __init__(self, path: Path, db: sqlite3.Connection) -> None:
         self.path = path
@@ -278,7 +287,7 @@ class Record:
         if not path.is_file():
             raise no_tests(folder)
         try:
-            db = connected(path, cls.mode, "meta")
+            db = _connected(path, cls.mode)
             ((version,),) = db.execute("PRAGMA user_version")
         except sqlite3.Error as error:
             raise UsageError(
@@ -304,6 +313,11 @@ class Record:
         with reading_store(self.path):
             return Plan.model_validate_json(self.meta("plan")).came_with(self.path)
 
+    @cached_property
+    def keeps_runs(self) -> bool:
+        """Whether this is a folder of runs."""
+        return self.names() == [""]
+
     def total(self) -> int | None:
         """Returns the number of tests that the plan requests; None if it has only a time limit."""
         tests = self.plan().budget.tests
@@ -317,7 +331,10 @@ class Record:
 
     def run(self, cell: str, number: int, has_drive: bool = True) -> Run:
         """Returns the stored Run of a test; see ``folder_record.kept_run``. Without its drive, it has no
-        verdict."""
+        verdict. Of a folder of runs, it is read from its files; raises UsageError if that cannot be done."""
+        if self.keeps_runs:
+            self.check_ended(cell, number)
+            return read_run(run_folder(self.folder, number))
         result = self.result(cell, number)
         own = self.cell(cell).of_test(result.proposal)
         made, request = self._blueprint(own, result)
@@ -370,6 +387,9 @@ class Record:
 
     def road(self, cell: Cell, result: Result) -> tuple[Road, Request] | None:
         """Returns the road of a test that has ended, and the request with its World; None without a road."""
+        if self.keeps_runs:
+            run = self.run(cell.name, result.number)
+            return None if run.road is None else (run.road, run.request)
         made, request = self._blueprint(cell.of_test(result.proposal), result)
         return None if made is None else (made_from(made, request.world, request.setup.geometry), request)
 
@@ -389,9 +409,10 @@ class Record:
         all of them in order, the "failures", or the "worst", which are those that failed and then those that
         passed, each by margin."""
         condition, order = WHICH[which]
+        has_run = "1" if self.keeps_runs else "design IS NOT NULL"
         sql = (
             "SELECT tests.cell, tests.number FROM tests JOIN details USING (cell, number) "  # noqa: S608 - ours
-            f"WHERE outcome IS NOT NULL AND {self.has_run} AND {condition} AND (? = '' OR tests.cell = ?) "
+            f"WHERE outcome IS NOT NULL AND {has_run} AND {condition} AND (? = '' OR tests.cell = ?) "
             f"ORDER BY {order} tests.cell, tests.number"
         )
         return [NumberedTest(*row) for row in self.query(sql, (cell, cell))]
@@ -401,11 +422,13 @@ class Record:
         found = self.query("SELECT outcome FROM tests WHERE cell = ? AND number = ?", (cell, number))
         if found and found[0][0] is not None:
             return
+        test = f"test {number} of {cell}" if cell else f"run {number}"
         if found:
-            raise UsageError(f"test {number} of {cell} in {self.folder} has not ended yet")
+            raise UsageError(f"{test} in {self.folder} has not ended yet")
         ((low, high),) = self.query("SELECT min(number), max(number) FROM tests WHERE cell = ?", (cell,))
-        there = "it has no tests yet" if low is None else f"its tests are {low} to {high}"
-        raise UsageError(f"{self.folder} holds no result of test {number} of {cell}; {there}")
+        tests = "tests" if cell else "runs"
+        there = f"it has no {tests} yet" if low is None else f"its {tests} are {low} to {high}"
+        raise UsageError(f"there is no {test} in {self.folder}; {there}")
 
     def feature_names(self) -> list[str]:
         """Returns the names of all features that occur in the results, sorted."""
@@ -576,9 +599,9 @@ class Record:
         """Records that no further batch of a cell will be requested, and the reason."""
         self._change("UPDATE cells SET closed = ? WHERE name = ?", why, cell)
 
-    def finish(self) -> None:
-        """Records that the campaign is finished."""
-        self._set_meta("finished", "yes")
+    def finish(self, is_finished: bool = True) -> None:
+        """Records that the campaign is finished, or that more tests were asked for."""
+        self._set_meta("finished", "yes" if is_finished else "")
 
     def spend(self, spent: Spent) -> None:
         """Adds what a language model used outside of finished tests, as in a test beyond its allowance."""
@@ -660,6 +683,29 @@ def _verdict_of(road: Road, drive: Drive, cell: Cell, result: Result) -> Verdict
     return replace(judged, **{name: value for name, value in kept.items() if value is not None})
 
 
+def _connected(path: Path, mode: str) -> sqlite3.Connection:
+    """Returns a connection to a store, to read ("ro") or also to write it ("rw"), so that what a killed
+    process left is undone; raises sqlite3.Error, also if reading it would run its own words."""
+    address, db = f"{path.resolve().as_uri()}?mode={mode}", None
+    try:
+        db = sqlite3.connect(address, BUSY_SECONDS, isolation_level=None, uri=True)
+        db.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST)
+        if db.execute("SELECT 1 FROM sqlite_master WHERE type IN ('view', 'trigger')").fetchone():
+            raise sqlite3.DatabaseError("it has views or triggers, which roadgpt does not make")
+        db.execute("SELECT 1 FROM meta LIMIT 1").fetchone()
+        return db
+    except sqlite3.Error as error:
+        if db is not None:
+            db.close()
+        log = path.with_name(f"{path.name}-wal")
+        is_whole = not log.exists() or not log.stat().st_size
+        is_shut = getattr(error, "sqlite_errorcode", 0) & 0xFF == sqlite3.SQLITE_CANTOPEN
+        if mode == "ro" and is_whole and is_shut:
+            # an interrupted campaign on a read-only disk: no process can be writing the file
+            return _connected(path, "ro&immutable=1")
+        raise
+
+
 def no_road(folder: Path, cell: str, result: Result) -> UsageError:
     """Returns the error for a test of a folder that has no road."""
     name = NumberedTest(cell, result.number)
@@ -674,6 +720,12 @@ class Store(Record):
     with the same results, since a batch depends only on the results of earlier batches."""
 
     mode = "rw"
+    group_seconds = 1.0
+    """Longest time in seconds that a result waits to be stored; if the process is killed, the results of
+    this time are lost."""
+
+    run_test: Callable[..., FinishedTest | OutOfAllowance] = staticmethod(execute)
+    """Runs a test on a worker."""
 
     @classmethod
     def new(
@@ -697,7 +749,7 @@ class Store(Record):
             db.executescript(SCHEMA)
             db.execute("BEGIN")
             db.executemany("INSERT INTO meta VALUES (?, ?)", meta.items())
-            texts = [(each.name, _cells().dump_json(each).decode()) for each in cells]
+            texts = [(each.name, _text_of(each)) for each in cells]
             db.executemany("INSERT INTO cells(name, cell) VALUES (?, ?)", texts)
             if spent is not None and spent.calls:
                 db.execute(
@@ -725,21 +777,30 @@ class Store(Record):
 
     def close(self) -> None:
         """Closes the file; once the campaign is finished, the file may be copied and made read-only."""
-        with suppress(sqlite3.Error):  # somebody reads it at this moment
+        with suppress(sqlite3.Error, UsageError):  # somebody reads it at this moment, or it is closed
             if self.meta("finished"):
                 self._db.execute("PRAGMA journal_mode = DELETE")
         super().close()
 
     def keep(self, ended: Sequence[tuple[str, FinishedTest]], *rest: Any) -> None:
         """Stores results; raises UsageError if a file of a driver has changed since an earlier test."""
+        self.join_versions(ended)
+        super().keep(ended, *rest)
+
+    def join_versions(self, ended: Sequence[tuple[str, FinishedTest]]) -> None:
+        """Adds the files that drivers have used; raises UsageError if one has changed since an earlier
+        test."""
         for name, one in ended:
             driver = self.cell(name).request.setup.driver
             before = self.versions(driver)
             if before != (now := joined(before, one.driver_files, self.folder)):
                 every = [now if each == driver else self.versions(each) for each in self._drivers]
                 self._set_meta("versions", json.dumps(every))
-        super().keep(ended, *rest)
 
     def set_plan(self, plan: str) -> None:
         """Replaces the stored plan, as JSON, by one that differs only in limits and the like."""
         self._set_meta("plan", plan)
+
+    def set_cell(self, cell: Cell) -> None:
+        """Replaces a stored cell by one that differs only in limits."""
+        self._change("UPDATE cells SET cell = ? WHERE name = ?", _text_of(cell), cell.name)

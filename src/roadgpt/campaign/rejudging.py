@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from roadgpt.campaign.folder_record import FolderRecord, open_record
+from roadgpt.campaign.folder_record import open_record
 from roadgpt.campaign.model import NumberedTest
 from roadgpt.errors import SceneError, UsageError
 from roadgpt.run import REFUSED, Run, judged
@@ -37,7 +37,7 @@ def rejudge(folder: Path) -> Iterator[Rejudged]:
             try:
                 run = record.run(*name)
                 if run.drive is not None and run.verdict is not None:
-                    has_scene = isinstance(record, FolderRecord) or not run.request.setup.scenario
+                    has_scene = record.keeps_runs or not run.request.setup.scenario
                     yield _again(name, run, has_scene)
             except UsageError as error:
                 yield Rejudged(name, 0, "", "", str(error))

@@ -1,96 +1,180 @@
-"""Folders of runs, as ``roadgpt run`` and each part of a study write them, as the stores of cells.
+"""Folders of runs, as ``roadgpt run`` and each part of a study write them: campaigns of one cell whose tests
+have folders of files.
 
-Each folder has a record of its tests, see ``run.store``. The process that holds the folder's lock adds a row
-to it when the files of a Run are written; from then on the test has ended. Its tables are those of the
-plug-ins ``tables``."""
+A worker writes the files of a Run. The process that holds the folder's lock then writes the row of its test,
+from when on the test has ended, and the tables of the plug-ins ``tables``."""
 
-import sqlite3
-from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, closing
 from dataclasses import dataclass, field, replace
-from hashlib import sha256
 from pathlib import Path
 from typing import Any, Self
 
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
 from roadgpt.campaign.columns import features_in
-from roadgpt.campaign.model import GIVEN, PATIENCE, WITHOUT_GOAL, Cell, CellBudget, Proposal
-from roadgpt.campaign.record import SCHEMA, Record
+from roadgpt.campaign.csv_tables import write_tables
+from roadgpt.campaign.folder_record import is_store, open_record
+from roadgpt.campaign.model import PATIENCE, WITHOUT_GOAL, Cell, CellBudget
+from roadgpt.campaign.plan import Plan
+from roadgpt.campaign.record import STORE, Record, Store
 from roadgpt.campaign.scheduler import Scheduler
-from roadgpt.campaign.single_test import FinishedTest, Task, WorkerSetup, error_run, run_test
+from roadgpt.campaign.single_test import (
+    FinishedTest,
+    Task,
+    WorkerSetup,
+    error_run,
+    finished_run,
+    run_test,
+)
 from roadgpt.campaign.workers import LOG, InProcess, WorkerConfig
 from roadgpt.chat import ChatError, Meter, Spent
 from roadgpt.design import designer_of
 from roadgpt.design.room import world_for
 from roadgpt.errors import DesignError, RoadGPTError, UsageError, explained
-from roadgpt.road import Design, World
-from roadgpt.run import PLAIN, USUAL, Request, Run, Setup, atomic, brief_of, check_parts, store
-from roadgpt.run.atomic import LOCK, json_text, missing, refuse_links, sweep, take_away, write_whole
+from roadgpt.road import World
+from roadgpt.run import PLAIN, USUAL, Request, Run, Setup, brief_of, check_parts, read_run, seed_of, write_run
+from roadgpt.run.atomic import (
+    LOCK,
+    alone_in,
+    is_new,
+    missing,
+    refuse_links,
+    set_aside,
+    sweep,
+    take_away,
+    write_whole,
+)
 from roadgpt.run.execution import test_name, test_text
 from roadgpt.run.folder import (
-    CARD,
     HOME,
     RUNS,
-    Card,
     Draw,
-    finished,
-    finished_run_in,
+    is_finished,
     keep_ground,
     new_folder,
-    read_card,
     remove_run,
     run_folder,
-    write_again,
     write_run_folder,
 )
-from roadgpt.run.versions import Versions, joined, still, versions_now
+from roadgpt.run.versions import versions_now
 
 
 @dataclass(frozen=True)
 class RunWriter:
-    """Runs tests and writes their Runs into folders."""
+    """Runs tests and writes the folders of their Runs."""
 
-    folders: Mapping[str, Path]  # the folder of each cell
+    folder: Path
     draw: Draw | None = None  # draws pictures into the folders of Runs; None: no pictures
-    meter: Meter | None = None  # counts the use of language models in this process; None on workers
+    returns_runs: bool = False
 
-    def __call__(self, task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTest:
+    def __call__(self, task: Task, cell: Cell) -> FinishedTest:
         """Runs one test and writes the folder of its Run, but not its ``test.NNNN.json``."""
-        return self.written(run_test(task, cell, earlier, self.meter or Meter()), task, cell.name)
+        return self.written(run_test(task, cell, (), Meter()), task)
 
-    def written(self, run: Run, task: Task, cell: str) -> FinishedTest:
+    def written(self, run: Run, task: Task) -> FinishedTest:
         """Writes the folder of a Run, and returns its test as a FinishedTest."""
-        with writing(self.folders[cell]):
-            own = write_run_folder(run, self.folders[cell], self.draw)
-            keep_ground(run.world, self.folders[cell], own)
-        kept = None if self.meter is None else run
-        return FinishedTest.of(run, task, test_file=test_text(run), entries=_entries(run), run=kept)
-
-
-def finished_run(run: Run) -> FinishedTest:
-    """Converts the Run of an earlier session to a FinishedTest."""
-    proposal = Proposal(run.design, run.seed, "draft" if run.words or run.brief else GIVEN)
-    return FinishedTest.of(run, Task(run.index, run.index - 1, proposal), features_in(run, told_alone=True))
-
-
-def counted(run: Run) -> FinishedTest:
-    """Returns what ``finished_run`` does, with what the tables count."""
-    return replace(finished_run(run), entries=_entries(run))
-
-
-def _entries(run: Run) -> dict[str, Any]:
-    return {name: plugins.find("tables", name).entry(run) for name in plugins.names("tables")}
-
-
-def _tables() -> dict[str, Any]:
-    return {name: plugins.find("tables", name)() for name in plugins.names("tables")}
+        with writing(self.folder):
+            own = write_run_folder(run, self.folder, self.draw)
+            keep_ground(run.world, self.folder, own)
+        kept = run if self.returns_runs else None
+        more = {"test_file": test_text(run), "entries": entries_of(run), "run": kept}
+        return FinishedTest.of(run, task, features_in(run), **more)
 
 
 def writing(folder: Path) -> AbstractContextManager[None]:
     """Turns a failure to write to a folder into one clear error message."""
     advice = "make room there and continue with the same command and --out"
     return explained(RoadGPTError, f"cannot write into {folder}", advice)
+
+
+def entries_of(run: Run) -> dict[str, Any]:
+    """Returns what the tables of a folder of runs count of a Run, by the names of the plug-ins ``tables``."""
+    return {name: plugins.find("tables", name).entry(run) for name in plugins.names("tables")}
+
+
+class Tables:
+    """The tables of a folder of runs, which the plug-ins ``tables`` write."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._every = {name: plugins.find("tables", name)() for name in plugins.names("tables")}
+        self.files = [name for each in self._every.values() for name in each.files]
+
+    def add(self, entries: Mapping[str, Any]) -> None:
+        """Counts a Run, see ``entries_of``."""
+        for name, entry in entries.items():
+            self._every[name].add(entry)
+
+    def write(self) -> None:
+        """Writes the tables that change with each road; raises OSError."""
+        for each in self._every.values():
+            each.write(self._folder)
+
+    def describe(self, request: Request, roads: int) -> None:
+        """Writes the tables that do not change with each road; raises OSError."""
+        for each in self._every.values():
+            each.describe(request, roads, self._folder)
+
+
+class RunStore(Store):
+    """The store of a folder of runs, open for writing."""
+
+    group_seconds = 0.0
+
+    def begin(self, work: "Campaign", returns_runs: bool) -> None:
+        """Prepares the folder for a session of a campaign."""
+        self.run_test = RunWriter(self.folder, work.draw, returns_runs)
+        self._tests, self.tables = work.tests, Tables(self.folder)
+        for one in self._tests.values():
+            self.tables.add(one.entries)
+        with writing(self.folder):
+            refuse_links(self.folder / RUNS)
+            (self.folder / RUNS).mkdir(exist_ok=True)
+            sweep(self.folder)
+            sweep(self.folder / RUNS)
+            self.tables.describe(work.request, work.roads)
+        self.set_plan(Plan.of(work.request, work.roads).model_dump_json())
+        self._own = work.cell
+        self.set_cell(self._own)
+        self.finish(is_finished=False)
+        for batch in self.batches(""):
+            if not batch.left and batch.first not in self._tests:  # its files are gone
+                self.reopen("", batch.first, batch.number)
+
+    def cell(self, name: str) -> Cell:
+        """Returns the cell with the settings of language models that this session has."""
+        return self._own if name == self._own.name else super().cell(name)
+
+    def keep(self, ended: Sequence[tuple[str, FinishedTest]], *rest: Any) -> None:
+        """Stores tests that have ended, and writes their ``test.NNNN.json`` before and the tables after."""
+        self.join_versions(ended)
+        for cell, one in ended:
+            if not one.test_file:  # its workers died, perhaps while they drew pictures
+                task = Task(one.result.number, one.result.batch, one.result.proposal)
+                one = RunWriter(self.folder).written(
+                    error_run(task, self.cell(cell), one.result.description), task
+                )
+            with writing(self.folder):
+                write_whole(self.folder / test_name(one.result.number), one.test_file)
+            self._tests[one.result.number] = replace(one, test_file="", run=None)
+            self.tables.add(one.entries)
+        super().keep(ended, *rest)
+        if ended:
+            with writing(self.folder):
+                self.tables.write()
+
+    def reopen(self, cell: str, number: int, batch: int) -> None:
+        """Removes a test that ended without a drive, so that it runs again."""
+        super().reopen(cell, number, batch)
+        self._tests.pop(number, None)
+        self.tables = Tables(self.folder)
+        for one in self._tests.values():
+            self.tables.add(one.entries)
+        with writing(self.folder):
+            remove_run(number, self.folder)
+            self.tables.write()
 
 
 @dataclass(repr=False, eq=False)
@@ -100,197 +184,135 @@ class Campaign:
 
     folder: Path
     request: Request
-    brief: Brief | None  # the requirements read from the description; None if there is none
+    brief: Brief  # the requirements read from the description
     roads: int  # number of roads requested
     made: tuple[Path, ...] = ()
     """The folders (this folder or parents of it) that this session created, innermost first. They are removed
     if no road can be designed."""
-    tests: dict[int, FinishedTest] = field(default_factory=dict)  # the tests that have ended, by number
-    failure: str = ""
-    """Why no road could be designed; empty if a road was designed or none has been tried yet."""
-    versions: Versions = field(default_factory=dict)
-    """What decides the results of the tests besides the request."""
     draw: Draw | None = None
     """Draws pictures into the folders of Runs; None: no pictures."""
     meter: Meter = field(default_factory=Meter)
     """Counts the tokens and cost of language models, including those of earlier sessions in the folder."""
-    _tables: dict[str, Any] = field(default_factory=_tables)
-    _held_back: list[FinishedTest] = field(default_factory=list)
+    workers: int = 1
+    """Number of processes that drive; with 1, this process drives."""
+    tests: dict[int, FinishedTest] = field(default_factory=dict)
+    """The tests that have ended and whose files are there, by number."""
+    is_over: bool = False
+    """True if all tests have ended and the tables of the folder are complete."""
+    failure: str = ""
+    """Why no road could be designed; empty if a road was designed or none has been tried yet."""
 
     @classmethod
     def opened(
         cls, request: Request, brief: Brief, roads: int, out: Path | str | None, again: bool = False,
-        draw: Draw | None = None, meter: Meter | None = None,
+        draw: Draw | None = None, meter: Meter | None = None, workers: int = 1,
     ) -> Self:  # fmt: skip
         """Opens a new folder, or one that holds tests of the same request, which ``again`` sets aside."""
         if roads < 1:
             raise UsageError(f"{roads} roads cannot be made; ask for 1 or more")
-        read = brief.model_dump_json(exclude={"confidence", "other", "unused"}, exclude_defaults=True)
-        now = versions_now([(request, WITHOUT_GOAL)])[request.setup.driver]
-        now["reading"] = sha256(read.encode()).hexdigest()[:16]
+        seed_of(request.seed, 1)  # a wrong seed raises an error now
+        versions = versions_now([(request, WITHOUT_GOAL)])
         if out is None:
             made = missing(HOME)
             path = new_folder(request.words, request.seed)
-            return cls(path, request, brief, roads, (path, *made), {}, "", now, draw, meter or Meter())
-        path = Path(out)
-        with explained(UsageError, f"cannot use {path}", "name another folder"):
-            made = missing(path)
-            path.mkdir(parents=True, exist_ok=True)
-            if again:
-                atomic.set_aside(path, CARD)
-            holds_tests = not atomic.is_new(path, CARD)
-        folder = cls(path, request, brief, roads, made, {}, "", now, draw, meter or Meter())
-        if holds_tests:
-            folder.take_up()
-        return folder
+            made = (path, *made)
+        else:
+            path = Path(out)
+            with explained(UsageError, f"cannot use {path}", "name another folder"):
+                made = missing(path)
+                path.mkdir(parents=True, exist_ok=True)
+                if again:
+                    set_aside(path, STORE)
+                if not is_store(path) and not is_new(path, STORE):
+                    raise UsageError(
+                        f"{path} is not empty and was not made by roadgpt run; name another folder"
+                    )
+        work = cls(path, request, brief, roads, made, draw, meter or Meter(), workers)
+        if is_store(path):
+            work.take_up()
+            with Record.opened(path) as record:
+                record.refuse_changed(versions)
+        else:
+            with alone_in(path):
+                Store.new(path, Plan.of(request, roads).model_dump_json(), [work.cell], versions).close()
+        return work
+
+    @property
+    def cell(self) -> Cell:
+        """The cell whose tests this folder holds."""
+        budget = CellBudget(tests=self.roads)
+        return Cell("", self.request, self.brief, WITHOUT_GOAL, None, {}, budget, keeps_runs=True)
 
     @property
     def is_complete(self) -> bool:
         """True if all tests have ended."""
         return len(self.tests) >= self.roads
 
-    def take_up(self) -> Card:
+    def take_up(self) -> None:
         """Reads the folder's finished tests that are not in ``tests`` yet; ignores Runs that cannot be read.
-        Raises UsageError if it holds Runs of another request, or more than asked for, or of other versions.
-        """
-        card = read_card(self.folder)
-        there_was = card.request.settings()
+        Raises UsageError if it holds Runs of another request, or more than asked for."""
+        with Record.opened(self.folder) as record:
+            if not record.keeps_runs:
+                raise UsageError(f"{self.folder} holds a campaign of many tests; name another folder")
+            kept, numbers = record.cell(""), [number for _, number in record.tests()]
+            was_over = bool(record.meta("finished")) and kept.budget.tests == self.roads
+        there_was = kept.request.settings()
         other = [name for name, value in self.request.settings().items() if there_was[name] != value]
+        if not other and _asked(kept.brief) != _asked(self.brief):
+            other = ["reading of the description"]
         if other:
             raise UsageError(
                 f"{self.folder} holds other roads (different {' and '.join(other)}); name another folder, or "
                 "add --again to make all its tests anew"
             )
-        there = finished(self.folder)
-        if there and not store.is_kept(self.folder):
+        if numbers and numbers[-1] > self.roads:
             raise UsageError(
-                f"{self.folder} has no {store.STORE}, the record of its tests, so they are shown but not "
-                "continued; name another folder, or add --again to make all its tests anew"
-            )
-        if there and there[-1] > self.roads:
-            raise UsageError(
-                f"{self.folder} holds road {there[-1]} already; ask for at least so many "
+                f"{self.folder} holds road {numbers[-1]} already; ask for at least so many "
                 "roads or name another folder"
             )
-        if there:
-            self.versions = still(card.versions, self.versions, self.request.setup.driver, self.folder)
-        for index in there:
-            if index not in self.tests:
-                self._read(index)
-        return card
+        for number in numbers:
+            if number not in self.tests and is_finished(self.folder, number):
+                self._read(number)
+        self.is_over = was_over and self.is_complete
 
-    def _read(self, index: int) -> None:
+    def _read(self, number: int) -> None:
         try:
-            run = finished_run_in(self.folder, index)
+            run = read_run(run_folder(self.folder, number))
         except UsageError:
             return
-        if run.index == index:
-            self.count(counted(run))
+        if run.index == number:
+            self.tests[number] = replace(finished_run(run), entries=entries_of(run))
             self.meter.add(run.spent or Spent())
 
-    def cell(self, name: str) -> Cell:
-        """Returns the cell whose tests this folder holds."""
-        generator = WITHOUT_GOAL if self.request.words or self.brief else GIVEN
-        budget = CellBudget(tests=self.roads)
-        return Cell(name, self.request, self.brief, generator, None, {}, budget, in_sequence=True)
+    @property
+    def has_road(self) -> bool:
+        """Whether a road has been designed."""
+        return any(one.has_road for one in self.tests.values())
 
-    def begin(self) -> bool:
-        """Prepares the folder for a session. If all tests have ended, changes nothing and returns True."""
-        # another process may have worked in the folder since it was opened
-        if (self.folder / CARD).is_file() and self.take_up().is_finished and self.is_complete:
-            return True
+    def complete(self, store: Store) -> None:
+        """If all tests have ended, writes the tables, draws the picture of all roads, and marks the campaign
+        as finished."""
+        if self.is_over or not (self.has_road and self.is_complete):
+            return
         with writing(self.folder):
-            refuse_links(self.folder / RUNS)
-            sweep(self.folder)
-            self.write_card(is_finished=False)
-            (self.folder / RUNS).mkdir(exist_ok=True)
-            sweep(self.folder / RUNS)
-            for number in self.tests:  # a killed process may have left a row whose files were not written
-                places = self.folder / test_name(number), run_folder(self.folder, number)
-                if not all(place.exists() for place in places):
-                    write_again(self.folder, number, self.folder)
-            self.write_settings()
-        return False
+            write_tables(store, self.folder)
+            if self.draw is not None:
+                self.draw.of_campaign(self.folder)
+        store.finish()
+        self.is_over = True
 
-    def write_settings(self) -> None:
-        """Writes the tables that do not change with each road."""
-        for each in self._tables.values():
-            each.describe(self.request, self.roads, self.folder)
-
-    def add(self, ended: FinishedTest) -> list[FinishedTest]:
-        """Writes the file of a test that has ended, and then the tables; returns the tests that were written.
-        Tests without a road are held back until a road has been designed, so that the folder stays empty if
-        none can be."""
-        self.versions = joined(self.versions, ended.driver_files, self.folder)
-        self._held_back.append(ended)
-        if not any(one.has_road for one in (ended, *self.tests.values())):
-            return []
-        written, self._held_back = self._held_back, []
-        with writing(self.folder):
-            for one in written:
-                self.keep(one)
-        return written
-
-    def keep(self, ended: FinishedTest) -> None:
-        """Stores a test whose Run is written, from when on it has ended; then writes its ``test.NNNN.json``
-        and the tables. Raises OSError."""
-        number = ended.result.number
-        self.write_card(is_finished=False)
-        store.keep(self.folder, number, run_folder(self.folder, number), ended.test_file)
-        write_whole(self.folder / test_name(number), ended.test_file)
-        self.count(ended)
-        self.write_tables()
-
-    def remove(self, number: int) -> None:
-        """Removes a test that has no drive, so that it is run when the campaign continues."""
-        self.tests.pop(number, None)
-        self._tables = _tables()
-        for ended in [*self.tests.values()]:
-            self.count(ended)
-        with writing(self.folder):
-            store.remove(self.folder, number)
+    def drop(self, store: Store) -> None:
+        """If no road has been designed, removes the tests, and then the folders that this session created, if
+        they are empty."""
+        if self.has_road:
+            return
+        for number in self.kept:
+            self.failure = self.tests.pop(number).result.description
             remove_run(number, self.folder)
-            self.write_tables()
-
-    def write_tables(self) -> None:
-        """Writes the tables, which count all tests in the folder."""
-        with writing(self.folder):
-            for each in self._tables.values():
-                each.write(self.folder)
-
-    def close(self, draw: Draw | None = None) -> None:
-        """Writes the tables, draws the picture of all roads, and marks the campaign as finished."""
-        with writing(self.folder):
-            self.write_tables()
-            if draw is not None:
-                draw.of_campaign(self.folder)
-            self.write_card(is_finished=True)
-
-    def drop_held_back(self) -> None:
-        """Discards the tests that were held back because they have no road; removes the folder if it holds
-        no other test."""
-        with writing(self.folder):
-            for one in self._held_back:
-                remove_run(one.result.number, self.folder)
-                self.failure = one.result.description
-            self._held_back = []
-            if self.tests:
-                self.write_tables()
-            else:
-                self.take_away(LOCK)
-
-    def take_away(self, *names: str) -> None:
-        """Removes ``campaign.json``, the tables and the files in ``names``; then ``runs/`` and the folders
-        that were created for this session, if they are empty."""
-        tables = (name for each in self._tables.values() for name in each.files)
-        every = (CARD, *tables, store.STORE, *names)
+        store.close()
+        stored = (f"{STORE}{end}" for end in ("", "-wal", "-shm"))
+        every = (*Tables(self.folder).files, LOG, LOCK, *stored)
         take_away((self.folder / name for name in every), (self.folder / RUNS, *self.made))
-
-    def count(self, ended: FinishedTest) -> None:
-        """Counts a test that has ended for the tables."""
-        self.tests[ended.result.number] = replace(ended, test_file="", run=None)
-        for name, entry in (ended.entries or {}).items():
-            self._tables[name].add(entry)
 
     def __repr__(self) -> str:
         done = f"{len(self.tests)} of {self.roads} roads"
@@ -318,130 +340,72 @@ class Campaign:
         return self._runs(with_earlier=True)
 
     def _runs(self, with_earlier: bool) -> Iterator[Run]:
-        tests = work_in(self.folder, {"": self}, self.draw, self.meter, with_earlier=with_earlier)
-        with closing(tests):
-            for _, ended in tests:
-                assert ended.run is not None
-                yield ended.run
+        with closing(work_in(self.folder, {"": self}, self.workers, with_earlier, self.meter)) as tests:
+            for _, number, run in tests:
+                yield run or read_run(run_folder(self.folder, number))
         if self.failure:
             raise DesignError(self.failure)
 
-    def write_card(self, is_finished: bool) -> None:
-        """Writes ``campaign.json``; raises OSError."""
-        card = Card(request=self.request, roads=self.roads, is_finished=is_finished, versions=self.versions)
-        write_whole(self.folder / CARD, json_text(card.model_dump(mode="json")))
+
+def seed_in(folder: Path) -> int | None:
+    """Returns the seed of the runs in a folder; None if there are none."""
+    if not is_store(folder):
+        return None
+    with Record.opened(folder) as record:
+        return record.cells()[0].request.seed
 
 
-class FolderStore(Record):
-    """A store whose tests lie in folders of runs, one for each cell; the tables are built from them in
-    memory, so that the same code schedules, resumes and counts both kinds of campaigns."""
-
-    group_seconds = 0.0
-
-    def __init__(self, home: Path, folders: Mapping[str, Campaign], cells: Sequence[Cell]) -> None:
-        """Builds the tables from the tests in the folder of each cell; messages name the folder ``home``."""
-        super().__init__(home / CARD, sqlite3.connect(":memory:", isolation_level=None))
-        self._folders = folders
-        self._cells = {cell.name: cell for cell in cells}
-        self.written: list[tuple[str, FinishedTest]] = []
-        """Tests whose files were written, with their cells' names; code that reads this list empties it."""
-        self._db.executescript(SCHEMA)
-        self._db.execute("INSERT INTO meta VALUES ('finished', '')")
-        self._db.executemany(
-            "INSERT INTO cells(name, cell) VALUES (?, '')", [(name,) for name in self._cells]
-        )
-        for name, folder in folders.items():
-            self._enter(name, folder.tests, range(1, max(folder.tests, default=0) + 1))
-
-    def _enter(
-        self, cell: str, ended: Mapping[int, FinishedTest], numbers: Iterable[int] | None = None
-    ) -> None:
-        """Enters tests into the tables; tests of ``numbers`` that have not ended are still to be run."""
-        seed = self._cells[cell].request.seed
-        for number in ended if numbers is None else numbers:
-            made = ended[number].result.proposal if number in ended else Proposal(None, seed, "draft")
-            self.add_batch(cell, number - 1, number, [made])
-        super().keep([(cell, one) for one in ended.values()])
-
-    def to_resume(self, *more: object) -> str:
-        """Returns the command that continues the tests, with further options."""
-        if all(each.folder == self.folder for each in self._folders.values()):
-            return super().to_resume(*more)
-        return " ".join(map(str, ("the same command with --out", self.folder, *more)))
-
-    def names(self) -> list[str]:
-        """Returns the names of all cells."""
-        return [*self._cells]
-
-    def cells(self) -> list[Cell]:
-        """Returns all cells."""
-        return [*self._cells.values()]
-
-    def cell(self, name: str) -> Cell:
-        """Returns one cell; raises UsageError if there is none of that name."""
-        return self._cells[name] if name in self._cells else super().cell(name)
-
-    def keep(self, ended: Sequence[tuple[str, FinishedTest]], *rest: Any) -> None:
-        """Enters tests that have ended into the tables, and writes their files; see ``Campaign.add``."""
-        super().keep(ended, *rest)
-        for name, one in ended:
-            if one.entries is None:  # its workers died, perhaps while they drew pictures
-                task = Task(one.result.number, one.result.batch, one.result.proposal)
-                run = error_run(task, self._cells[name], one.result.description)
-                one = RunWriter({name: self._folders[name].folder}).written(run, task, name)
-            self.written += [(name, each) for each in self._folders[name].add(one)]
-
-    def reopen(self, cell: str, number: int, batch: int) -> None:
-        """Removes a test that ended without a drive, so that it runs again."""
-        super().reopen(cell, number, batch)
-        self._folders[cell].remove(number)
+def _asked(brief: Brief | None) -> dict[str, Any]:
+    return {} if brief is None else brief.model_dump(exclude={"confidence", "other", "unused"})
 
 
 def work_in(
     home: Path,
     folders: Mapping[str, Campaign],
-    draw: Draw | None = None,
-    meter: Meter | None = None,
-    workers: int = 0,
+    workers: int = 1,
     with_earlier: bool = False,
-) -> Generator[tuple[str, FinishedTest], None, None]:
+    meter: Meter | None = None,
+) -> Generator[tuple[str, int, Run | None], None, None]:
     """Runs the remaining tests of folders of runs, lazily: each test runs while the caller iterates. Yields
-    the name of the folder and the test, as soon as the files of the test are complete.
+    the name of the folder and the number of the test as soon as its files are complete, and its Run, if this
+    process drove it.
 
     If no road can be designed for a folder, ``Campaign.failure`` gives the reason, and the folder stays
-    without tests. Messages refer to ``home``, in which ``workers`` processes write their log; with 0, the
-    tests run in this process, where ``meter`` counts the use of language models. ``with_earlier``: the tests
-    of earlier sessions are yielded first."""
+    without tests. Messages refer to ``home``, in which workers write their log; ``meter`` counts the use of
+    language models. ``with_earlier``: the tests of earlier sessions are yielded first."""
     with ExitStack() as stack:
-        for folder in folders.values():
-            stack.enter_context(atomic.alone_in(folder.folder))
-        left = {name: folder for name, folder in folders.items() if not folder.begin()}
-        for name, folder in folders.items() if with_earlier else ():
-            for number, ended in sorted(folder.tests.items()):
-                yield name, replace(ended, run=finished_run_in(folder.folder, number))
-        if not left:
+        stores, names = list[RunStore](), dict[Path, str]()
+        for name, folder in folders.items():
+            stack.enter_context(alone_in(folder.folder))
+            folder.take_up()  # another process may have worked in the folder since it was opened
+            yield from ((name, number, None) for number in (folder.kept if with_earlier else ()))
+            if not folder.is_over:
+                store = stack.enter_context(RunStore.opened(folder.folder))
+                store.begin(folder, returns_runs=workers <= 1)
+                stores.append(store)
+                names[store.path] = name
+        if not stores:
             return
         refuse_links(home / LOG)
-        cells = [each.cell(name) for name, each in left.items()]
-        setups = tuple(dict.fromkeys(cell.request.setup for cell in cells))
-        staff = WorkerConfig(max(workers, 1), WorkerSetup(setups), PATIENCE, home / LOG)
-        kind = plugins.find("executors", "processes") if workers else InProcess
-        places = {name: each.folder for name, each in left.items()}
-        writer = RunWriter(places, draw, None if workers else meter or Meter())
-        store = stack.enter_context(FolderStore(home, {**left}, cells))
+        setups = tuple(dict.fromkeys(folders[name].request.setup for name in names.values()))
+        staff = WorkerConfig(workers, WorkerSetup(setups), PATIENCE, home / LOG)
+        kind = plugins.find("executors", "processes") if workers > 1 else InProcess
+        held = defaultdict[str, list[tuple[str, int, Run | None]]](list)
         try:
-            with closing(Scheduler(store, staff, kind, run_test=writer).run()) as steps:
-                for _ in steps:
-                    written, store.written = store.written, []
-                    yield from written
-                    for name in [name for name, folder in left.items() if folder.is_complete]:
-                        left.pop(name).close(draw)
-        except BaseException as error:
-            for folder in left.values():  # their tables must count every finished road
-                folder.drop_held_back() if isinstance(error, ChatError) else folder.write_tables()
+            with closing(Scheduler(stores, staff, kind, meter=meter).run()) as steps:
+                for news in steps:
+                    for its, one in news:
+                        held[name := names[its.path]].append((name, one.result.number, one.run))
+                        if folders[name].has_road:
+                            yield from held.pop(name)
+                    for store in stores:
+                        folders[names[store.path]].complete(store)
+        except ChatError:
+            for store in stores:
+                folders[names[store.path]].drop(store)
             raise
-        for folder in left.values():
-            folder.drop_held_back()
+        for store in stores:
+            folders[names[store.path]].drop(store)
 
 
 def campaign(
@@ -454,6 +418,7 @@ def campaign(
     draw: Draw | None = None,
     meter: Meter | None = None,
     again: bool = False,
+    workers: int = 1,
 ) -> Campaign:
     """Makes many Runs of one description in one folder; each Run is written as soon as it is finished.
 
@@ -472,6 +437,7 @@ def campaign(
         draw: writes pictures into the folders, as ``report.Drawing`` does; None: no pictures.
         meter: as for ``perform``; the cost of earlier roads in the folder is added to it.
         again: whether all roads are made anew; earlier results move into the subfolder ``before-1``.
+        workers: number of processes that drive; with 1, this process drives. The Runs are the same.
 
     Raises:
         BriefError: the words cannot be read.
@@ -483,4 +449,24 @@ def campaign(
     request = Request(words=brief.words, seed=seed, world=world, setup=setup)
     designer_of(setup.designer, setup.chat)
     check_parts(setup, request.world)
-    return Campaign.opened(request, brief, n, out, again, draw, meter)
+    return Campaign.opened(request, brief, n, out, again, draw, meter, workers)
+
+
+def write_runs(folder: Path, out: Path) -> Iterator[Path]:
+    """Writes the tests of a campaign, or of a folder of runs, as files of runs with their tables into
+    ``out``; of a campaign, into a folder in ``out`` for each cell. Yields the folder of each Run when it is
+    written. Raises UsageError if runs are in ``out`` already."""
+    with open_record(folder) as record:
+        for cell in record.cells():
+            place = out / cell.name
+            if (place / RUNS).exists():
+                raise UsageError(f"{place} holds runs already; name another folder")
+            names, tables = record.tests(cell.name), Tables(place)
+            with alone_in(place), writing(place):
+                for _, number in names:
+                    run = record.run(cell.name, number)
+                    write_run(run, place)
+                    tables.add(entries_of(run))
+                    yield run_folder(place, number)
+                tables.describe(cell.request, cell.budget.tests or len(names))
+                tables.write()

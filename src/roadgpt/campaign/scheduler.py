@@ -14,12 +14,21 @@ from roadgpt import plugins
 from roadgpt.campaign.given import content_of
 from roadgpt.campaign.model import Cell, GivenRoad, Pool, Result
 from roadgpt.campaign.model import Generator as TestGenerator
-from roadgpt.campaign.record import Batch, Record
-from roadgpt.campaign.single_test import Allowance, FinishedTest, OutOfAllowance, Task, error_run, execute
-from roadgpt.campaign.workers import LostWorkerError, Shared, WorkerConfig
-from roadgpt.chat import ChatSettings
+from roadgpt.campaign.record import Batch, Store
+from roadgpt.campaign.single_test import (
+    CONCERNS_ALL,
+    Allowance,
+    FinishedTest,
+    OutOfAllowance,
+    Task,
+    draft,
+    error_run,
+)
+from roadgpt.campaign.workers import InProcess, LostWorkerError, Shared, WorkerConfig
+from roadgpt.chat import ChatSettings, Meter
 from roadgpt.errors import BudgetError, RoadGPTError
 from roadgpt.road import Design
+from roadgpt.run import Run
 from roadgpt.run.model import MOST, given_up
 from roadgpt.stopping import look
 
@@ -33,22 +42,23 @@ class BatchScheduler:
     """Requests batches of tests from the generator of one cell.
 
     Batch k is requested once all tests of batch k - 2 have ended; by then the generator was told the results
-    of batches 0 to k - 2, and no others. If the tests of the cell run one after another, each is a batch of
-    its own and is requested once all earlier ones have ended."""
+    of batches 0 to k - 2, and no others. Of a cell that keeps runs, each test is a batch of its own: its road
+    is drafted here, so that it differs from all earlier ones, and only driven on workers."""
 
-    def __init__(self, cell: Cell, store: Record) -> None:
-        self.cell, self.shared = cell, Shared(cell)
-        self._store = store
+    def __init__(self, cell: Cell, store: Store) -> None:
+        self.cell, self.shared, self.store = cell, Shared(cell), store
         self.batches: list[Batch] = store.batches(cell.name)
         ((self.seconds, self.closed),) = store.query(
             "SELECT seconds, closed FROM cells WHERE name = ?", (cell.name,)
         )
         self._generator: TestGenerator | None = None
-        self._lag = 1 if cell.in_sequence else LAG
         self._unfinished = {batch.number for batch in self.batches if batch.left}
         self._batches_told = self._tests_told = 0
         self._has_road = False
         self._blocks: dict[int, Shared[tuple[Design, ...]]] = {}
+        self._drafts: dict[int, Design] = {}
+        for result in store.results(cell.name) if cell.keeps_runs else ():
+            self._note(result.number, result)
 
     @property
     def asked(self) -> int:
@@ -68,7 +78,7 @@ class BatchScheduler:
     @property
     def may_ask(self) -> bool:
         """True if the next batch may be requested now."""
-        last = len(self.batches) - self._lag
+        last = -1 if self.cell.keeps_runs else len(self.batches) - LAG
         return not self.is_closed and not any(number <= last for number in self._unfinished)
 
     @property
@@ -85,18 +95,18 @@ class BatchScheduler:
 
     def close(self, why: str) -> None:
         """Closes the cell and stores the reason: no further batch is requested."""
-        self._store.close_cell(self.cell.name, why)
+        self.store.close_cell(self.cell.name, why)
         self.closed = why
 
     def ask(self, pool: Pool) -> list[Task]:
         """Requests the next batch, stores it, and returns its tests; closes the cell and returns nothing if
         the generator has nothing left, or if three tests or more have ended and none has a road."""
         batch, first = len(self.batches), self.asked + 1
-        generator = self._taught(batch - self._lag)
+        generator = self._taught(-1 if self.cell.keeps_runs else batch - LAG)
         if self._tests_told >= GIVE_UP and not (self._has_road or "scenario" in self.cell.settings):
             self.close(f"no road could be designed: {self._last.description}")
             return []
-        most = 1 if self.cell.in_sequence else generator.batch_size
+        most = 1 if self.cell.keeps_runs else generator.batch_size
         n = min(most, self.cell.budget.most - self.asked)
         proposals = generator.ask(batch, first, n, pool)
         if len(proposals) > n:
@@ -112,7 +122,7 @@ class BatchScheduler:
         if not proposals:
             self.close("the generator had nothing left to propose")
             return []
-        self._store.add_batch(self.cell.name, batch, first, proposals)
+        self.store.add_batch(self.cell.name, batch, first, proposals)
         self.batches.append(Batch(batch, first, len(proposals), len(proposals)))
         self._unfinished.add(batch)
         return [Task(number, batch, made) for number, made in enumerate(proposals, first)]
@@ -124,20 +134,32 @@ class BatchScheduler:
         generator: TestGenerator = self._generator
         while self._batches_told <= last:
             results = self._results(self.batches[self._batches_told])
-            self._has_road = self._has_road or any(result.design for result in results)
-            self._last = results[-1]
+            for result in results:
+                self._note(result.number, result)
             generator.tell(results)
             self._batches_told += 1
-            self._tests_told += len(results)
         return generator
+
+    def _note(self, number: int, made: Result | Run) -> None:
+        self._has_road = self._has_road or made.design is not None
+        self._last, self._tests_told = made, self._tests_told + 1
+        if self.cell.keeps_runs and made.plain_design is not None:
+            self._drafts[number] = made.plain_design
+
+    def draft(self, test: Task, meter: Meter) -> Run:
+        """Returns the Run of a test whose cell keeps runs, before its drive."""
+        earlier = [design for number, design in sorted(self._drafts.items()) if number < test.number]
+        run = draft(test, self.cell, earlier, meter)
+        self._note(test.number, run)
+        return run
 
     def _results(self, batch: Batch) -> list[Result]:
         between = "tests.number BETWEEN ? AND ?"
-        return [*self._store.results(self.cell.name, between, (batch.first, batch.first + batch.n - 1))]
+        return [*self.store.results(self.cell.name, between, (batch.first, batch.first + batch.n - 1))]
 
     def earlier(self, test: Task) -> list[Shared[tuple[Design, ...]]]:
         """Returns the designs from which a draft must differ: one tuple for each earlier batch."""
-        if test.proposal.design is not None:
+        if test.proposal.design is not None or test.drafted is not None:
             return []
         known = self._known(test.batch)
         self._blocks = {batch: self._blocks.get(batch) or Shared(self._designs(batch)) for batch in known}
@@ -145,9 +167,9 @@ class BatchScheduler:
 
     def _known(self, batch: int) -> range:
         """Returns the indices of earlier batches from whose roads every draft in ``batch`` must differ."""
-        last = batch - self._lag
-        if last < 0 or self.cell.in_sequence:
-            return range(last + 1)
+        last = batch - LAG
+        if last < 0:
+            return range(0)
         last_known = self.batches[last].first + self.batches[last].n - 1
         oldest = max(0, -(-(last_known - REMEMBERED) // STRIDE) * STRIDE)
         begin = bisect(self.batches, oldest, key=lambda one: one.first + one.n - 1)
@@ -164,6 +186,7 @@ U = TypeVar("U")
 WAIT = 0.25  # s to wait for results at a time
 GROUP = 128  # most results that are stored together: 10 MB of drives
 PER_WORKER = 2  # tests per worker, running or queued; with fewer, the next cell is begun
+OUTCOMES = "SELECT outcome, count(*) FROM tests WHERE outcome IS NOT NULL GROUP BY outcome"
 PARTS = 4  # per worker, of the items of a generator: few messages, no long wait for the last
 
 
@@ -177,38 +200,42 @@ class Scheduler:
 
     def __init__(
         self,
-        store: Record,
+        stores: Sequence[Store],
         staff: WorkerConfig,
         kind: Callable[[WorkerConfig], Executor],
         chat: ChatSettings | None = None,
-        run_test: Callable[..., FinishedTest | OutOfAllowance] | None = None,
+        meter: Meter | None = None,
     ) -> None:
         """Prepares the session, with executors of a ``kind``. The limits of ``chat`` hold for all tests
-        together; None stands for the settings of each cell. ``run_test`` runs a test on a worker, by default
-        ``single_test.execute``."""
-        self._store = store
-        self._staff = staff
-        self._names = store.names()
-        self._tokens, self._cost = store.spent()
-        self._chat = chat
-        self._run_test = run_test or execute
-        counts = store.query("SELECT outcome, count(*) FROM tests WHERE outcome IS NOT NULL GROUP BY outcome")
-        self._outcomes = Counter(dict(counts))
-        self._unopened = iter(self._names)
+        together; None stands for the settings of each cell. ``meter`` counts, and limits, the use of language
+        models in drafts of cells that keep runs."""
+        self._stores, self._staff, self._chat, self._meter = stores, staff, chat, meter or Meter()
+        self._places = {(store.path, name): at for at, (store, name) in enumerate(_cells(stores))}
+        spent = [store.spent() for store in stores]
+        self._tokens, self._cost = sum(each[0] for each in spent), sum(each[1] for each in spent)
+        self.outcomes = Counter[str]()
+        """The number of tests with each outcome, of all sessions."""
+        for store in stores:
+            self.outcomes += Counter(dict(store.query(OUTCOMES)))
+        self._unopened = _cells(stores)
         self._schedules: list[BatchScheduler] = []
         self._out: dict[Future[FinishedTest | OutOfAllowance], _Out] = {}
         self._underfunded: list[_Out] = []
-        self._pending: list[tuple[str, FinishedTest]] = []
+        self._pending: list[tuple[BatchScheduler, FinishedTest]] = []
+        self._news: list[tuple[Store, FinishedTest]] = []
+        self._group_seconds = min((store.group_seconds for store in stores), default=0.0)
         self._looked = time.monotonic()  # when results were last stored
         self._lost: dict[tuple[int, int], tuple[_Out, str]] = {}  # by place of cell and number of test
         self._error: Exception | None = None
         self._may_write = True
         self._has_news = False
         self.executor = kind(staff)
+        self._most_out = 1 if kind is InProcess else PER_WORKER * staff.workers
 
-    def run(self) -> Generator[Counter[str], None, None]:
-        """Runs tests until none is left; yields the number of tests with each outcome after every group of
-        results. However the session ends, the results so far are stored and the workers are stopped."""
+    def run(self) -> Generator[list[tuple[Store, FinishedTest]], None, None]:
+        """Runs tests until none is left; yields each group of tests that have ended, with their stores, once
+        they are stored. However the session ends, the results so far are stored and the workers are
+        stopped."""
         try:
             yield from self._run()
         except BaseException:
@@ -218,13 +245,15 @@ class Scheduler:
                     if self._error is None:
                         self._take()
                 self._keep()
-                self._store.end_session()
+                for store in self._stores:
+                    store.end_session()
             raise
         finally:
             self.executor.shutdown(cancel_futures=True)
 
-    def _run(self) -> Iterator[Counter[str]]:
-        self._store.begin_session(self._staff.workers)
+    def _run(self) -> Iterator[list[tuple[Store, FinishedTest]]]:
+        for store in self._stores:
+            store.begin_session(self._staff.workers)
         while self._error is None:
             look()
             self._fill()
@@ -232,15 +261,18 @@ class Scheduler:
                 break
             wait(self._out, WAIT, FIRST_COMPLETED)
             self._take()
-            if time.monotonic() >= self._looked + self._store.group_seconds or len(self._pending) >= GROUP:
+            if time.monotonic() >= self._looked + self._group_seconds or len(self._pending) >= GROUP:
                 self._keep()
             if self._has_news:
-                self._has_news = False
-                yield self._outcomes
+                yield self._told()
         if self._error is not None:
             raise self._error
         self._keep()
-        yield self._outcomes
+        yield self._told()
+
+    def _told(self) -> list[tuple[Store, FinishedTest]]:
+        self._has_news, news, self._news = False, self._news, []
+        return news
 
     # Handing out
 
@@ -249,10 +281,12 @@ class Scheduler:
             self._retry_underfunded()
             return
         while True:
-            schedule = next((schedule for schedule in self._schedules if schedule.may_ask), None)
+            is_full = self._error is not None or len(self._out) >= self._most_out
+            ready = (one for one in self._schedules if one.may_ask and not (is_full and one.cell.keeps_runs))
+            schedule = next(ready, None)
             if schedule is not None:
                 self._ask(schedule)
-            elif len(self._out) >= PER_WORKER * self._staff.workers or not self._open():
+            elif is_full or not self._open():
                 return
 
     def _ask(self, schedule: BatchScheduler) -> None:
@@ -266,11 +300,11 @@ class Scheduler:
             self._schedules.remove(schedule)
 
     def _open(self) -> bool:
-        for name in self._unopened:
-            schedule = BatchScheduler(self._with_chat(self._store.cell(name)), self._store)
+        for store, name in self._unopened:
+            schedule = BatchScheduler(self._with_chat(store.cell(name)), store)
             if not schedule.is_done:
                 self._schedules.append(schedule)
-                self._hand_out(schedule, self._store.waiting(name))
+                self._hand_out(schedule, store.waiting(name))
                 return True
         return False
 
@@ -287,9 +321,22 @@ class Scheduler:
         """Queues tests, each with the given allowance; if it is None, the tests share half of the tokens and
         money that are left, and the other half is left for later tests."""
         each = allowance or self._share(2 * max(len(tests), 1))
-        for test in [replace(test, allowance=each, road=self._file_of(test)) for test in tests]:
+        for test in tests:
+            road = test.proposal.design
+            file = content_of(road, schedule.store.folder) if isinstance(road, GivenRoad) else b""
+            test = replace(test, allowance=each, road=file)
+            if schedule.cell.keeps_runs:
+                try:
+                    test = replace(test, drafted=schedule.draft(test, self._meter))
+                except CONCERNS_ALL as error:  # those that are driven now may end, for their drafts were paid
+                    while not all(future.done() for future in self._out):
+                        look()
+                        wait(self._out, WAIT, FIRST_COMPLETED)
+                    self._take()
+                    self._error = self._error or error
+                    return
             shared: list[Shared[Any]] = [schedule.shared, *schedule.earlier(test)]
-            future = self.executor.submit(_run_with, self._run_test, test, *shared)
+            future = self.executor.submit(_run_with, schedule.store.run_test, test, *shared)
             self._out[future] = _Out(schedule, test)
 
     def _share(self, parts: int = 1) -> Allowance:
@@ -304,10 +351,6 @@ class Scheduler:
             cost -= self._cost + sum(each.cost or 0.0 for each in given)
             cost = max(cost, 0.0) / parts
         return Allowance(tokens, cost)
-
-    def _file_of(self, test: Task) -> bytes:
-        road = test.proposal.design
-        return content_of(road, self._store.folder) if isinstance(road, GivenRoad) else b""
 
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
         """Returns the results of ``function`` for all items, in order, for generators: see ``model.Pool``."""
@@ -335,7 +378,7 @@ class Scheduler:
         return BudgetError(
             f"the limit of {limit} leaves no room for the next question ({self._tokens:,.0f} tokens and "
             f"{self._cost:.4f} USD are spent); continue with a higher one, such as: "
-            f"{self._store.to_resume(*more)}"
+            f"{self._stores[0].to_resume(*more)}"
         )
 
     # Taking in
@@ -357,11 +400,11 @@ class Scheduler:
                 self._tokens += value.spent.usage.total
                 self._cost += value.spent.cost or 0.0
             if isinstance(value, OutOfAllowance):
-                self._store.spend(value.spent)
+                out.schedule.store.spend(value.spent)
                 self._underfunded.append(out)
                 continue
-            self._pending.append((out.schedule.cell.name, value))
-            self._outcomes[value.result.outcome] += 1
+            self._pending.append((out.schedule, value))
+            self.outcomes[value.result.outcome] += 1
             out.schedule.ended(out.task.batch)
             if value.is_lost:
                 self._lost[self._place(out)] = out, value.result.description
@@ -384,12 +427,12 @@ class Scheduler:
             first = before
         again = [out for place, (out, _) in self._lost.items() if place >= first]
         for out in again:
-            self._store.reopen(out.schedule.cell.name, out.task.number, out.task.batch)
-        self._outcomes["ERROR"] -= len(again)
+            out.schedule.store.reopen(out.schedule.cell.name, out.task.number, out.task.batch)
+        self.outcomes["ERROR"] -= len(again)
         self._error = given_up(self._lost[row[-1]][1], "fix it and continue")
 
     def _place(self, out: _Out) -> tuple[int, int]:
-        return self._names.index(out.schedule.cell.name), out.task.number
+        return self._places[out.schedule.store.path, out.schedule.cell.name], out.task.number
 
     def _is_next(self, place: tuple[int, int], other: tuple[int, int]) -> bool:
         """Returns whether ``other`` is the next test after ``place``, perhaps the first of the next cell."""
@@ -401,16 +444,13 @@ class Scheduler:
     def _keep(self) -> None:
         """Stores the tests that have ended: first their drives, so that every stored result has its drive."""
         now = time.monotonic()
-        drives = [(cell, one.result.number, one.trace) for cell, one in self._pending if one.trace]
         self._may_write = False  # until all is written
-        trace = None
-        if drives:
-            from roadgpt.campaign.traces import write_traces
-
-            number = self._store.next_trace()
-            trace = number, write_traces(self._store.folder, number, drives)
-        taken = {schedule.cell.name: now - self._looked for schedule in self._schedules}
-        self._store.keep(self._pending, trace, taken)
+        for store in self._stores:
+            ended = [(schedule.cell.name, one) for schedule, one in self._pending if schedule.store is store]
+            own = [schedule for schedule in self._schedules if schedule.store is store]
+            if ended or own:
+                self._keep_in(store, ended, {schedule.cell.name: now - self._looked for schedule in own})
+                self._news += [(store, one) for _, one in ended]
         self._may_write = True
         for schedule in self._schedules:
             schedule.seconds += now - self._looked
@@ -418,6 +458,20 @@ class Scheduler:
         self._pending = []
         self._has_news = True
         self._schedules = [schedule for schedule in self._schedules if not schedule.is_done]
+
+    @staticmethod
+    def _keep_in(store: Store, ended: list[tuple[str, FinishedTest]], taken: dict[str, float]) -> None:
+        trace, drives = None, [(cell, one.result.number, one.trace) for cell, one in ended if one.trace]
+        if drives:
+            from roadgpt.campaign.traces import write_traces
+
+            number = store.next_trace()
+            trace = number, write_traces(store.folder, number, drives)
+        store.keep(ended, trace, taken)
+
+
+def _cells(stores: Sequence[Store]) -> Iterator[tuple[Store, str]]:
+    return ((store, name) for store in stores for name in store.names())
 
 
 def _run_with(function: Callable[..., T], task: Task, *shared: Shared[Any]) -> T:

@@ -1,19 +1,19 @@
 """Runs one test of a cell on a worker: from its proposal to its result."""
 
 import traceback
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from roadgpt.campaign.given import source_of
-from roadgpt.campaign.model import Cell, GivenRoad, Proposal, Result
+from roadgpt.campaign.model import GIVEN, Cell, GivenRoad, Proposal, Result
 from roadgpt.chat import ChatError, Meter, ReplyError, Spent
 from roadgpt.errors import BudgetError, DesignError, PartError, RoadGPTError, UsageError
 from roadgpt.network.source import RoadSource
 from roadgpt.plural import plural
 from roadgpt.provenance import NameOrigins, join, known
 from roadgpt.road import Design
-from roadgpt.run import REFUSED, Run, Seconds, Setup, check_parts, perform, prove, seed_of
+from roadgpt.run import REFUSED, Run, Seconds, Setup, check_parts, drafted, driven, prove, seed_of
 
 if TYPE_CHECKING:
     from roadgpt.campaign.traces import Trace
@@ -43,6 +43,7 @@ class Task:
     proposal: Proposal
     allowance: Allowance = BOUNDLESS
     road: bytes = b""  # the file of a road that was given
+    drafted: Run | None = None  # of a folder of runs: what is to be driven
 
 
 @dataclass(frozen=True)
@@ -56,10 +57,11 @@ class FinishedTest:
     error: str = ""  # the traceback if the test raised an error; else empty
     is_lost: bool = False  # true if the simulator itself failed, so that the test says nothing about the road
     driver_files: Mapping[str, str] = field(default_factory=dict)  # as in the Run
-    test_file: str = ""  # of a folder of runs: text for ``test.NNNN.json``; empty if the file exists already
+    test_file: str = ""  # of a folder of runs: text for ``test.NNNN.json``
     has_road: bool = True
-    entries: Mapping[str, Any] | None = None  # of a folder of runs: what each plug-in ``tables`` counts
-    run: Run | None = None  # of a folder of runs; None if a worker or an earlier session ran the test
+    entries: Mapping[str, Any] = field(default_factory=dict)
+    """Of a folder of runs: what each plug-in ``tables`` counts."""
+    run: Run | None = None  # of a folder of runs; None if a worker ran the test
 
     @classmethod
     def of(
@@ -116,7 +118,9 @@ def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTes
 def run_test(task: Task, cell: Cell, earlier: tuple[tuple[Design, ...], ...], meter: Meter) -> Run:
     """Returns the Run of a test, also if no road can be designed, or the language model gives no usable
     reply."""
-    before, proposal = meter.spent, task.proposal
+    if task.drafted is not None:
+        return task.drafted if task.drafted.road is None else driven(task.drafted)
+    proposal = task.proposal
     try:
         cell = cell.of_test(proposal)
         world, setup = cell.request.world, cell.request.setup
@@ -124,18 +128,31 @@ def run_test(task: Task, cell: Cell, earlier: tuple[tuple[Design, ...], ...], me
             return _run_of_given(source_of(proposal.design, task.road), task, cell)
         if proposal.design is not None:
             return prove(proposal.design, proposal.seed, world, setup, task.number, cell.brief)
-        assert cell.brief is not None, "only a cell with words lets its tests be drafted"
-        drafted_before = [design for block in earlier for design in block if not setup.scenario]
-        return perform(cell.brief, proposal.seed, world, setup, task.number, drafted_before, meter)
-    except (DesignError, ReplyError) as error:
-        spent = meter.spent.since(before)
-        return replace(error_run(task, cell, str(error)), spent=spent if spent.calls else None)
+        run = draft(task, cell, [design for block in earlier for design in block], meter)
+        return run if run.road is None else driven(run)
+    except DesignError as error:
+        return error_run(task, cell, str(error))
     except PartError:
         raise
     except UsageError as error:
         if "scenario" not in cell.settings:
             raise
         return replace(error_run(task, cell, f"{REFUSED}{error}"), outcome="INVALID")
+
+
+def draft(task: Task, cell: Cell, earlier: Sequence[Design], meter: Meter) -> Run:
+    """Returns the Run of a test before its drive, also if no road can be designed, or the language model
+    gives no usable reply."""
+    assert cell.brief is not None, "only a cell with words lets its tests be drafted"
+    before, request = meter.spent, cell.request
+    unlike = () if request.setup.scenario else earlier
+    try:
+        return drafted(
+            cell.brief, task.proposal.seed, request.world, request.setup, task.number, unlike, meter
+        )
+    except (DesignError, ReplyError) as error:
+        spent = meter.spent.since(before)
+        return replace(error_run(task, cell, str(error)), spent=spent if spent.calls else None)
 
 
 def _run_of_given(source: RoadSource, task: Task, cell: Cell) -> Run:
@@ -161,6 +178,14 @@ def error_run(task: Task, cell: Cell, sentence: str, trace: str = "") -> Run:
 def seed_of_driver(number: int, proposal: Proposal) -> int:
     """Returns the driver's seed in test ``number``; a road that the worker designs has the same seed."""
     return seed_of(proposal.seed, number) if proposal.design is None else proposal.seed
+
+
+def finished_run(run: Run) -> FinishedTest:
+    """Converts the Run of an earlier session to a FinishedTest."""
+    from roadgpt.campaign.columns import features_in
+
+    proposal = Proposal(run.design, run.seed, "draft" if run.words or run.brief else GIVEN)
+    return FinishedTest.of(run, Task(run.index, run.index - 1, proposal), features_in(run, told_alone=True))
 
 
 def result_of(run: Run, task: Task, features: Mapping[str, float]) -> Result:

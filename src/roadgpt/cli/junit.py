@@ -15,7 +15,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from roadgpt.campaign.folder_record import has_tests, is_store, open_record
+from roadgpt.campaign.folder_record import has_tests, open_record
 from roadgpt.campaign.model import GIVEN, NO_WORDS, NumberedTest
 from roadgpt.cli.screen import Row, row_of
 from roadgpt.errors import RoadGPTError, explained
@@ -57,7 +57,7 @@ def suites_of(folder: Path, worse: Mapping[str, str]) -> Iterator[Suite]:
                 errors = dict(record.query(ERRORS, (cell.name,)))
                 for result in record.results(cell.name):
                     number = result.number
-                    file = "" if is_store(place) else str(place / test_name(number))
+                    file = str(place / test_name(number)) if record.keeps_runs else ""
                     test = str(NumberedTest(cell.name, number))
                     own = {"words": cell.request.words, "seed": record.seed(result)}
                     own |= {"seconds": times.get(number, 0.0), "trace": str(errors.get(number, ""))}

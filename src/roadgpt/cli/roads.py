@@ -65,11 +65,14 @@ def roads_named(
 
 def kind_of(file: str) -> Literal["road", "runs", "campaign"]:
     """Returns whether a name is of a road or single run, of runs, or of tests of a campaign."""
-    from roadgpt.campaign.folder_record import is_store
+    from roadgpt.campaign.folder_record import open_record
     from roadgpt.campaign.selection import selection_of
 
     place = selection_of(file)
-    return "road" if place is None else "campaign" if is_store(place.folder) else "runs"
+    if place is None:
+        return "road"
+    with open_record(place.folder) as record:
+        return "runs" if record.keeps_runs else "campaign"
 
 
 def use_each(
@@ -132,12 +135,13 @@ def _test(place: "Selection") -> NamedRoad:
 
 
 def _run(folder: Path, said: str) -> NamedRoad:
+    from roadgpt.campaign.folder_record import has_tests
     from roadgpt.run import read_run
-    from roadgpt.run.folder import CARD, RUNS
+    from roadgpt.run.folder import RUNS
 
     whole = Path(os.path.realpath(folder))
     campaign = whole.parent.parent
-    is_one_of_many = whole.parent.name == RUNS and (campaign / CARD).is_file()
+    is_one_of_many = whole.parent.name == RUNS and has_tests(campaign)
     stem = f"{campaign.name}-{whole.name}" if is_one_of_many else whole.name
     return NamedRoad(said, stem, whole, lambda: read_run(folder))
 

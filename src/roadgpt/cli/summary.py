@@ -11,7 +11,7 @@ import numpy as np
 
 from roadgpt import plugins
 from roadgpt.campaign.csv_tables import RESULTS
-from roadgpt.campaign.folder_record import is_store, open_record
+from roadgpt.campaign.folder_record import open_record
 from roadgpt.campaign.gate import Gate
 from roadgpt.campaign.model import NumberedTest
 from roadgpt.campaign.selection import Selection, selection_of
@@ -41,7 +41,7 @@ def watch(folder: Path, steps: Iterator[Counter[str]], as_json: bool, quiet: boo
     """Runs a campaign, shows its progress and prints its results; after Ctrl-C, prints how to resume it."""
     advice = f"finished tests are kept; continue with: {to_resume(folder)}"
     with open_record(folder) as record:
-        total = record.total()
+        total, keeps_runs = record.total(), record.keeps_runs
     with resumable(advice), progress("tests", None, quiet, has_lines=False) as tell:
         for outcomes in apart(steps):
             tell(outcomes.total(), total=total, rate=outcomes_line(outcomes))
@@ -52,7 +52,7 @@ def watch(folder: Path, steps: Iterator[Counter[str]], as_json: bool, quiet: boo
     elif not quiet:
         click.echo("\n".join(_told(status)))
         tables = f"tables: {folder / 'results.csv'} and {folder / 'cells.csv'}"
-        click.echo(tables if is_store(folder) else f"tests and tables: {folder}")
+        click.echo(f"tests and tables: {folder}" if keeps_runs else tables)
     if gate.remark and not quiet:
         click.echo(gate.remark, err=as_json)
 
@@ -137,13 +137,18 @@ def cell_lines(cells: Sequence[CellStatus]) -> list[str]:
 def json_lines(path: Path | str, choice: str | None = None) -> Iterator[str]:
     """Yields one JSON object for a whole campaign, or one for each named road."""
     place = selection_of(str(path))
-    if place is not None and is_store(place.folder) and not place.cell and choice is None:
+    if place is not None and not (place.cell or choice or _keeps_runs(place)):
         yield _as_json(status_of(place.folder))
         return
     for named in roads_named([str(path)], choice, takes_all=True):
         if named.run is None:
             raise UsageError(f"{path} is a road file, not a run; use 'roadgpt check'")
         yield row_of(named.run(), named.said).to_json()
+
+
+def _keeps_runs(place: Selection) -> bool:
+    with open_record(place.folder) as record:
+        return record.keeps_runs
 
 
 def text_lines(path: Path | str, choice: str | None = None) -> Iterator[str]:
@@ -163,7 +168,7 @@ def text_lines(path: Path | str, choice: str | None = None) -> Iterator[str]:
         yield from _run_lines(run, replay_lines(run, folder))
     elif place.cell:
         yield from _cell_lines(place)
-    elif is_store(place.folder):
+    elif not _keeps_runs(place):
         status = status_of(place.folder)
         yield from _told(status)
         if "FAIL" in status.outcomes:

@@ -16,6 +16,7 @@ from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path as Outline
 from matplotlib.transforms import Affine2D
 
+from roadgpt.campaign.folder_record import has_tests, open_record
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
 from roadgpt.reading import read_json
@@ -40,7 +41,7 @@ from roadgpt.report.canvas import (
 )
 from roadgpt.report.plan_view import ASPHALT, FAR_ASPHALT, GROUND, STEPS
 from roadgpt.run.execution import FIELDS
-from roadgpt.run.folder import CARD, read_card, run_of_test
+from roadgpt.run.folder import run_of_test
 from roadgpt.verdict import graded, percent
 
 PER_PAGE, MOST_PAGES = 100, 10
@@ -112,9 +113,10 @@ def pages(folder: Path | str) -> Iterator[Figure]:
 
 
 def _about(folder: Path) -> tuple[str, str]:
-    if not (folder / CARD).is_file():
+    if not has_tests(folder):
         return folder.name, ""
-    request = read_card(folder).request
+    with open_record(folder) as record:
+        request = record.cells()[0].request
     driver, oracle = Path(request.setup.driver).name, request.world.limits.oracle
     by = f", driver {driver}, oracle {oracle}" if request.setup.drives else ""
     return request.words, f"seed {request.seed}{by}"

@@ -336,8 +336,10 @@ class World(BaseModel):
     @model_serializer
     def _to_file(self) -> dict[str, Any]:
         usual = OWN | {"scene": "", "ground": "", "avoidable": None, "limit_stated": True}
+        told = self.section.model_fields_set & {"lanes", "centre_line"}  # then words do not change them
         values = self.values().items()
-        return {KEYS.get(name, name): value for name, value in values if usual.get(name, self) != value}
+        kept = [(name, value) for name, value in values if name in told or usual.get(name, self) != value]
+        return {KEYS.get(name, name): value for name, value in kept}
 
     def values(self) -> dict[str, Any]:
         """Returns a dictionary of the fields of all three parts, in the order of ``FIELDS``, and the text of

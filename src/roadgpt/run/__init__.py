@@ -4,7 +4,8 @@
                                ^                                  |        (none)                 |
                                '----------- their sentences ------'                  Verdict <--judge
 
-``perform`` makes a Run from words, and ``prove`` makes a Run from an existing Design or Road.
+``perform`` makes a Run from words, and ``prove`` makes a Run from an existing Design or Road. ``drafted`` and
+``driven`` are the two halves of ``perform``.
 """
 
 import time
@@ -31,7 +32,7 @@ from roadgpt.drive.loading import require_permission
 from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SceneError, SimulatorError
 from roadgpt.network import made_from, refuse_without_route
 from roadgpt.road import Design, Geometry, Road, World, in_short_segments
-from roadgpt.run.folder import Draw, read_run, seed_in, write_run
+from roadgpt.run.folder import Draw, read_run, write_run
 from roadgpt.run.model import Outcome, Request, Run, Seconds, Setup, seed_of
 from roadgpt.run.versions import versions_of
 from roadgpt.stopping import look
@@ -50,12 +51,13 @@ __all__ = [
     "Setup",
     "brief_of",
     "check_parts",
+    "drafted",
+    "driven",
     "judged",
     "perform",
     "prove",
     "read_run",
     "recording_of",
-    "seed_in",
     "seed_of",
     "write_run",
 ]
@@ -104,6 +106,14 @@ def perform(
         UsageError: a plug-in is not installed, the driver's file does not define a driver, or the simulator
             cannot apply a setting of the world.
         DriverError: the driver hung while it was created."""
+    return driven(drafted(words, seed, world, setup, index, earlier, meter))
+
+
+def drafted(
+    words: str | Brief, seed: int, world: World, setup: Setup, index: int,
+    earlier: Sequence[Design] = (), meter: Meter | None = None,
+) -> Run:  # fmt: skip
+    """Returns the Run of ``perform`` before it is driven."""
     check_parts(setup, world)
     begun = time.perf_counter()
     meter = meter or Meter.of(setup.chat)
@@ -118,7 +128,7 @@ def perform(
     with counting(meter, f"road {index}"):
         run = _designed(Run(request, index, own, brief=brief), brief, earlier)
     seconds, spent = Seconds(time.perf_counter() - begun), meter.spent.since(before)
-    return _driven(replace(run, spent=spent if spent.calls else None, seconds=seconds))
+    return replace(run, spent=spent if spent.calls else None, seconds=seconds)
 
 
 def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Meter | None = None) -> Brief:
@@ -168,7 +178,7 @@ def prove(
     request = Request(words=brief.words if brief else "", seed=seed, world=world, setup=setup)
     checking = time.perf_counter() - begun
     run = Run(request, index, seed, brief=brief, design=design, road=road, findings=findings)
-    return _driven(replace(run, seconds=Seconds(checking)), despite_findings)
+    return driven(replace(run, seconds=Seconds(checking)), despite_findings)
 
 
 @cache
@@ -239,7 +249,9 @@ def _is_staged(run: Run) -> bool:
     return True
 
 
-def _driven(run: Run, despite_findings: bool = False) -> Run:
+def driven(run: Run, despite_findings: bool = False) -> Run:
+    """Returns the Run after its drive, with its verdict; without a drive, if there is no road or it breaks a
+    rule."""
     setup = run.request.setup
     run = replace(run, versions=versions_of([setup]))
     objections = [finding for finding in run.findings if finding.stops or not despite_findings]

@@ -1,9 +1,8 @@
-"""Folders of runs: their names, ``campaign.json``, and the folder of one Run, which is written completely or
-not at all and read back as an equal Run.
+"""Folders of runs: their names, and the folder of one Run, which is written completely or not at all and read
+back as an equal Run.
 
 campaign/
-  campaign.json            the request, so that the campaign can be resumed
-  runs.sqlite              one row for each test that has ended, see ``run.store``; the files are made from it
+  campaign.sqlite          which tests have ended, and how, see ``campaign.record``
   test.0001.json           the test as the SBFT competition writes it
   runs/0001/
     brief.json design.json road.json drive.npz verdict.json    the Run's values, each in its own format
@@ -17,16 +16,14 @@ campaign/
 import re
 import shutil
 import unicodedata
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Annotated, Any, ClassVar, Literal, Protocol
+from typing import Annotated, Any, ClassVar, Protocol
 
 from pydantic import ConfigDict, Field, ValidationError
 
 from roadgpt.brief import remarks
-from roadgpt.brief.model import Brief, Frozen
+from roadgpt.brief.model import Brief
 from roadgpt.chat import Spent
 from roadgpt.check import Finding
 from roadgpt.design import DesignReport
@@ -34,9 +31,8 @@ from roadgpt.drive import Drive
 from roadgpt.errors import UsageError, explained
 from roadgpt.ground.given import BESIDE, GivenGround
 from roadgpt.network import road_from_json
-from roadgpt.reading import LARGEST, json_of, read_json, read_model, read_text, strictly
+from roadgpt.reading import LARGEST, read_json, read_text, strictly
 from roadgpt.road import World, read_design
-from roadgpt.run import store
 from roadgpt.run.atomic import json_text, refuse_links, to_bytes, whole_folder, write_whole
 from roadgpt.run.execution import test_name, test_text
 from roadgpt.run.model import Outcome, Request, Run, Seconds
@@ -72,32 +68,6 @@ def reject_used(out: Path | None) -> None:
     """Raises UsageError if ``out`` is a folder that is not empty."""
     if out is not None and out.is_dir() and any(out.iterdir()):
         raise UsageError(f"{out} is not empty; name another folder")
-
-
-CARD = "campaign.json"
-
-
-class Card(Frozen):
-    """The content of ``campaign.json``: a Request, the number of roads, and whether the campaign is done."""
-
-    format: Literal[1] = 1
-    request: Request
-    roads: int
-    is_finished: bool
-    versions: Mapping[str, str] = {}
-    """What decided the results of all roads besides the request, see ``run.versions``."""
-
-
-def seed_in(folder: Path) -> int | None:
-    """Returns the seed of the campaign in a folder; None if the folder holds no campaign."""
-    return read_card(folder).request.seed if (folder / CARD).is_file() else None
-
-
-def read_card(folder: Path) -> Card:
-    """Reads the ``campaign.json`` of a campaign's folder."""
-    absent = f"{folder} is not empty and was not made by roadgpt run; name another folder"
-    found = read_model(Card, folder / CARD, "the card of a campaign", absent)
-    return found.model_copy(update={"request": found.request.came_with(folder / CARD)})
 
 
 EDIT_CARD = "edit.json"
@@ -202,48 +172,15 @@ def _card(run: Run) -> dict[str, Any]:
 
 
 def finished(campaign: Path) -> list[int]:
-    """Returns the numbers of the finished Runs in a campaign's folder, in ascending order: those in its
-    record or, without one, those whose files are there."""
-    if store.is_kept(campaign):
-        return store.numbers(campaign)
+    """Returns the numbers of the Runs whose files are complete in a folder of runs, in ascending order."""
     numbers = (path.name.split(".")[1] for path in campaign.glob("test.*.json"))
     indices = sorted({int(number) for number in numbers if number.isdecimal()})
-    return [
-        index
-        for index in indices
-        if (campaign / test_name(index)).is_file() and run_folder(campaign, index).is_dir()
-    ]
+    return [index for index in indices if is_finished(campaign, index)]
 
 
-def finished_run_in(campaign: Path, index: int) -> Run:
-    """Returns one of the ``finished`` Runs; raises UsageError, see ``read_run``."""
-    place = run_folder(campaign, index)
-    if not store.is_kept(campaign):
-        return read_run(place)
-    with TemporaryDirectory() as folder:
-        for name, content in store.files_of(campaign, index).items():
-            (Path(folder) / name).write_bytes(content)
-        return _read_as(Path(folder), place)
-
-
-def write_again(campaign: Path, index: int, out: Path) -> None:
-    """Writes the files of a finished Run into the folder ``out``. A folder of the Run that is there keeps
-    its pictures and other files."""
-    files = store.files_of(campaign, index)
-    test = files.pop(store.TEST, b"")
-    place = run_folder(out, index)
-    refuse_links(out / RUNS, place, *(place / name for name in files))
-    place.mkdir(parents=True, exist_ok=True)
-    for name, content in files.items():
-        write_whole(place / name, content)
-    write_whole(out / test_name(index), test)
-
-
-def test_in(campaign: Path, index: int) -> Any:
-    """Returns the data of a test's ``test.NNNN.json``; raises OSError, ValueError or UsageError."""
-    if not store.is_kept(campaign):
-        return read_json(campaign / test_name(index))
-    return json_of(store.files_of(campaign, index).get(store.TEST, b"").decode())
+def is_finished(campaign: Path, index: int) -> bool:
+    """Returns whether the files of a Run are complete in a folder of runs."""
+    return (campaign / test_name(index)).is_file() and is_run(run_folder(campaign, index))
 
 
 def is_run(path: Path) -> bool:
@@ -261,14 +198,9 @@ def read_run(path: Path | str) -> Run:
         UsageError: there is no Run, one of its files cannot be read, or another version of RoadGPT wrote it.
     """
     folder = _folder_of(Path(path))
-    return _read_as(folder, folder)
-
-
-def _read_as(folder: Path, place: Path) -> Run:
-    """Returns the Run whose files lie in a folder; messages name ``place``."""
     card = _loaded(folder / "run.json")
     if not isinstance(card, dict) or card.get("format") != FORMAT:
-        raise UsageError(f"{place} was written by another version of roadgpt; make the road again")
+        raise UsageError(f"{folder} was written by another version of roadgpt; make the road again")
 
     def value(name: str) -> Any:
         return _loaded(folder / name) if (folder / name).is_file() else None
@@ -278,7 +210,7 @@ def _read_as(folder: Path, place: Path) -> Run:
         trace = folder / "error.txt"
         return Run(
             **vars(strictly(_Card, card)),
-            request=Request.model_validate(card["request"]).came_with(place / "run.json"),
+            request=Request.model_validate(card["request"]).came_with(folder / "run.json"),
             brief=None if brief is None else Brief.model_validate(brief),
             design=None if design is None else read_design(design)[0],
             road=None if road is None else road_from_json(road),
@@ -291,7 +223,7 @@ def _read_as(folder: Path, place: Path) -> Run:
             seconds=strictly(Seconds, value("seconds.json") or {}),
         )
     except (KeyError, TypeError, ValueError, ValidationError) as error:
-        raise UsageError(f"the run in {place} cannot be read ({error!r}); make the road again") from error
+        raise UsageError(f"the run in {folder} cannot be read ({error!r}); make the road again") from error
 
 
 def run_of_test(path: Path) -> Path | None:

@@ -13,7 +13,7 @@ from roadgpt.brief.sentence import WAVY
 from roadgpt.errors import UsageError
 from roadgpt.reading import read_text, toml_of
 from roadgpt.run import Run, read_run, seed_of
-from roadgpt.run.folder import CARD, finished, run_folder
+from roadgpt.run.folder import RUNS, finished, run_folder
 from roadgpt_study.survey.survey import ABOUT, PAIR_CRITERIA, Question
 
 Words = Annotated[str, Field(min_length=1, max_length=4000)]
@@ -171,7 +171,7 @@ def plan_from_runs(study: Path | str, asks: str, contact: str, seed: int = 0, pa
     also the one that is compared with the description, if there are no more."""
     study = Path(study).resolve()
     alignment, similarity = list[RoadPlan](), list[PairPlan]()
-    campaigns = {card.parent for depth in range(DEEPEST) for card in study.glob(f"{'*/' * depth}{CARD}")}
+    campaigns = {runs.parent for depth in range(DEEPEST) for runs in study.glob(f"{'*/' * depth}{RUNS}")}
     for number, campaign in enumerate(sorted(campaigns), 1):
         drawn = _drawn(campaign, seed_of(seed, number), 3 if len(similarity) < pairs else 1)
         if not drawn:

@@ -16,8 +16,6 @@ from roadgpt.brief import read
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, Segment
 from roadgpt.run import Run, Setup, perform, prove, write_run
-from roadgpt.run.folder import CARD as CAMPAIGN
-from roadgpt.run.folder import Card
 from roadgpt_study.survey import build
 from roadgpt_study.survey.command import command
 from roadgpt_study.survey.plan import criteria_of, plan_from_runs, plan_text, read_plan
@@ -38,8 +36,6 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for run in made:
             assert run.is_valid
             write_run(run, campaign)
-        card = Card(request=made[0].request, roads=2, is_finished=True)
-        (campaign / CAMPAIGN).write_text(card.model_dump_json())
     return folder
 
 

@@ -114,10 +114,10 @@ def command_of(folder: Path) -> str:
         cells, resume = record.cells(), record.to_resume()
     only, n = cells[0], cells[0].budget.tests
     if len(cells) > 1 or not only.request.words or n is None or only.settings:
-        return "" if only.in_sequence and not only.request.words else resume
+        return "" if only.keeps_runs and not only.request.words else resume
     words = request_words(only.request, n, only.brief)
     words += ["--goal", only.goal] if only.goal else []
     if only.generator != (WITH_GOAL if only.goal else WITHOUT_GOAL):
         words += ["--generator", only.generator]
     words += ["--seconds", f"{only.budget.seconds:g}"] if only.budget.seconds else []
-    return command_line("run" if only.in_sequence else "campaign", *words, "--out", folder)
+    return command_line("run" if only.keeps_runs else "campaign", *words, "--out", folder)

@@ -47,8 +47,8 @@ def export(
     unless an option changes them. Each file is named after its RUN or ROAD, and replaces a file of the same
     name. The names of the files are printed.
 
-    The format runs writes the tests of a campaign as folders of runs, or the folders and tables of RUN again,
-    in RUN itself if --out is left out.
+    The format runs writes the tests of a campaign, or of a folder of runs, as files of runs with their
+    tables.
 
     \b
     roadgpt export roadgpt-runs/hairpins-7 --to opendrive
@@ -62,7 +62,7 @@ def export(
         if unused := sorted(typed & {*rest, "geometry"}):
             named = ", ".join(f"--{name.replace('_', '-')}" for name in unused)
             raise UsageError(f"runs are written as they were recorded, all of them; leave out {named}")
-        return _write_runs(files, formats, out if "out" in typed else None, quiet)
+        return _write_runs(files, formats, out, quiet)
     for format_ in formats:
         exporter_of(format_)
     choice = options.choice_of(rest)
@@ -92,17 +92,15 @@ def export(
     return roads.use_each(files, choice, write, takes_all=True)
 
 
-def _write_runs(files: tuple[str, ...], formats: tuple[str, ...], out: Path | None, quiet: bool) -> int:
-    from roadgpt.campaign.folder_record import is_store, write_runs
+def _write_runs(files: tuple[str, ...], formats: tuple[str, ...], out: Path, quiet: bool) -> int:
+    from roadgpt.campaign.run_folder import write_runs
 
     if len(formats) > 1:
         raise UsageError("runs are whole folders, not files of roads; ask for them alone: --to runs")
     for file in map(Path, files):
         if not file.is_dir():
             raise UsageError(f"{file} is no folder; give a campaign, or a folder of runs")
-        name = file.resolve().name
-        place = out / name if out else Path("exports", name) if is_store(file) else file
-        for folder in write_runs(file, place):
+        for folder in write_runs(file, out / file.resolve().name):
             if not quiet:
                 click.echo(folder)
     return 0

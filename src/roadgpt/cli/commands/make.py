@@ -39,6 +39,7 @@ RUN_OPTIONS = (
     Option("--route", "For a map of roads: where the car turns at junctions, such as left,right. [default: "
            "random]", str, "", metavar="TURN,...", heading=Heading.DESIGN, is_rare=True),
     *options.MAKING,
+    *named(options.WORKERS, "workers"),
     *(*options.CHAT, *options.GATE, options.JUNIT, *options.SCREEN),
 )  # fmt: skip
 
@@ -86,16 +87,16 @@ def usual_values(words: str, roads: int, is_plan: bool = False) -> dict[str, Any
 
 def carry_out(
     screen: Screen, words: str, *, roads: int, seed: int | None, out: Path | None, again: bool,
-    junit: Path | None, route: str, axes: "Scale", formats: "tuple[Format, ...]", **given: Any,
+    junit: Path | None, route: str, axes: "Scale", formats: "tuple[Format, ...]", workers: int, **given: Any,
 ) -> None:  # fmt: skip
     """Interprets the description, makes its roads, and prints each road when it is finished.
 
     The keyword arguments are the values of the options. If ``seed`` is None, the runs in ``out``
     determine the seed; without such runs, the seed is random. An empty ``route`` means a random route."""
     from roadgpt.brief.plan import with_route
-    from roadgpt.campaign import campaign
+    from roadgpt.campaign.run_folder import campaign, seed_in
     from roadgpt.chat import Meter
-    from roadgpt.run import Setup, brief_of, seed_in
+    from roadgpt.run import Setup, brief_of
 
     gate = screen.gate = options.gate_of(given, out)
     world, pictures = options.world_of(given), options.pictures_of(given)
@@ -113,7 +114,7 @@ def carry_out(
     if seed is None:
         seed = secrets.randbelow(SEEDS)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
-        work = campaign(brief, roads, seed, world, setup, out, draw, meter, again)
+        work = campaign(brief, roads, seed, world, setup, out, draw, meter, again, workers)
     screen.request = work.request
     screen.say(understood(brief, work.request.world, world))
     tell_recording(screen, setup)
@@ -190,7 +191,7 @@ def _watch(work: "Campaign", pictures: "tuple[Format, ...]", screen: Screen, jun
         raise
     finally:
         if junit is not None:
-            write_junit(junit, [suite_of(work.request, screen.rows)])
+            write_junit(junit, [suite_of(work.request, sorted(screen.rows, key=lambda row: row.name))])
         screen.close()
         screen.spent(work.meter.spent)
         if screen.rows:

@@ -122,7 +122,6 @@ def work_to_the_end(
     ``given`` holds the gate, which decides last, and the values of the options, which can request a JUnit
     file and analyses of the tests. ``chat`` has the settings of the language model if the user changed
     a limit. ``draw`` adds pictures and road files to a folder of runs."""
-    from roadgpt.campaign.folder_record import is_store
     from roadgpt.campaign.lifecycle import work
     from roadgpt.campaign.record import Record
     from roadgpt.cli.summary import watch
@@ -134,14 +133,13 @@ def work_to_the_end(
         from roadgpt.cli.junit import suites_of, write_junit
 
         write_junit(given["junit"], [*suites_of(folder, given["gate"].worse)])
-    if is_store(folder):
-        with Record.opened(folder) as record:
-            if record.plan().paired:
-                from roadgpt.report.chapters.same_roads import compared
+    with Record.opened(folder) as record:
+        if record.plan().paired:
+            from roadgpt.report.chapters.same_roads import compared
 
-                page = write_report(folder)
-                if not given["quiet"]:
-                    click.echo("\n".join([*compared(record), f"report: {page}"]), err=given["as_json"])
+            page = write_report(folder)
+            if not given["quiet"]:
+                click.echo("\n".join([*compared(record), f"report: {page}"]), err=given["as_json"])
     for name in plugins.names("analyses"):
         plugins.find("analyses", name).at_end(folder, given)
     given["gate"].close()
@@ -314,22 +312,24 @@ def resume(folder: Path, driver: tuple[str, ...], base_url: str | None, axes: "S
 
     DIR is a folder that 'roadgpt campaign' or 'roadgpt run' wrote. Tests that had not finished are repeated.
     The tests and tables are the same as without the interruption, whatever the number of workers. If DIR
-    was written by 'roadgpt run', the remaining roads are made one at a time, with the same kinds of pictures
-    and road files as the finished ones.
+    was written by 'roadgpt run', the remaining roads get the same kinds of pictures and road files as the
+    finished ones.
 
     \b
     roadgpt resume roadgpt-runs/an-uphill-road-with-3-turns-7 -j 2"""
     from roadgpt.campaign.folder_record import has_tests, is_store, open_record
     from roadgpt.campaign.given import changes, given_roads
+    from roadgpt.campaign.lifecycle import cannot_go_on
     from roadgpt.chat.config import trust_server
     from roadgpt.drive.loading import check_named_drivers
     from roadgpt.reading import digest
 
     rest["gate"] = options.gate_of(rest, folder)
+    if has_tests(folder) and not is_store(folder):
+        raise cannot_go_on(folder)
     with open_record(folder) as record:
-        cells = record.cells()
-        plan = record.plan() if is_store(folder) else None
-    if plan is not None and plan.on and not has_tests(Path(plan.on)):
+        cells, plan = record.cells(), record.plan()
+    if plan.on and not has_tests(Path(plan.on)):
         roads = given_roads(plan.settings)
         for change in changes(roads, {road.name: digest(Path(plan.on, road.name)) for road in roads}):
             warn(f"{plan.on}: {change} since the campaign began, which goes on with what it kept of it")
@@ -341,7 +341,7 @@ def resume(folder: Path, driver: tuple[str, ...], base_url: str | None, axes: "S
     if limits and chat is None:
         raise UsageError(f"--max-tokens and --max-cost limit a language model, and {folder} asks none")
     changed = chat.model_copy(update=limits) if limits and chat else None
-    work_to_the_end(folder, rest, changed, _as_before(folder, axes) if cells[0].in_sequence else None)
+    work_to_the_end(folder, rest, changed, _as_before(folder, axes) if cells[0].keeps_runs else None)
 
 
 def _as_before(folder: Path, axes: "Scale") -> "Draw | None":
