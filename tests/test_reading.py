@@ -14,12 +14,16 @@ import pytest
 from click.testing import CliRunner
 
 from roadgpt import reading
+from roadgpt.campaign.folder_record import open_record
+from roadgpt.campaign.model import Cell
+from roadgpt.campaign.plan import Plan
+from roadgpt.campaign.record import STORE, Store
 from roadgpt.campaign.traces import read_traces
 from roadgpt.cli import app
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
 from roadgpt.ground.files import attached
-from roadgpt.run import store
+from roadgpt.run import Request
 
 SEGMENT = {"distance": 30, "direction": "left", "incline": 2, "turn_degrees": 40}
 
@@ -93,21 +97,22 @@ def test_toml_that_would_break_the_machine_is_told(
 @pytest.mark.parametrize(
     "more",
     [
-        "ALTER TABLE runs RENAME TO old; CREATE VIEW runs AS WITH RECURSIVE each(number) AS (SELECT 1 UNION "
-        "ALL SELECT number + 1 FROM each) SELECT number, NULL AS files FROM each",
-        "CREATE TRIGGER own AFTER INSERT ON runs BEGIN DELETE FROM runs; END",
-        "UPDATE runs SET files = zeroblob(900000000)",
+        "ALTER TABLE meta RENAME TO old; CREATE VIEW meta AS WITH RECURSIVE each(name) AS (SELECT 1 UNION "
+        "ALL SELECT name + 1 FROM each) SELECT name, NULL AS value FROM each",
+        "CREATE TRIGGER own AFTER INSERT ON tests BEGIN DELETE FROM tests; END",
+        "UPDATE cells SET cell = zeroblob(900000000)",
     ],
     ids=["a view without end", "a trigger", "a large value"],
 )
 def test_a_record_of_others_runs_nothing_and_fills_no_memory(more: str, tmp_path: Path) -> None:
-    store.keep(tmp_path, 1, tmp_path, "{}")
-    with sqlite3.connect(tmp_path / store.STORE) as db:
+    cell = Cell("", Request(), None, "words", None, keeps_runs=True)
+    Store.new(tmp_path, Plan.of(Request(), 1).model_dump_json(), [cell], {"": {}}).close()
+    with sqlite3.connect(tmp_path / STORE) as db:
         db.executescript(more)
     db.close()
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    with pytest.raises(UsageError, match=re.escape(str(tmp_path / store.STORE))):
-        store.numbers(tmp_path), store.files_of(tmp_path, 1)
+    with pytest.raises(UsageError, match=re.escape(str(tmp_path / STORE))), open_record(tmp_path) as record:
+        record.cells()
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 100_000
 
 
@@ -145,7 +150,6 @@ def test_whatever_unpacks_files_asks_the_guard() -> None:
     assert found == {
         "roadgpt/reading.py": ["np.load("],
         "roadgpt/ground/files.py": ["Image.open(", "np.load("],
-        "roadgpt/run/store.py": ["ZipFile("],
     }
 
 

@@ -273,8 +273,8 @@ def test_the_page_is_named_after_its_roads(folder: Path, monkeypatch: pytest.Mon
     assert (done.exit_code, done.stdout) == (0, "road-view.html\n")
     assert "no browser could be started; open road-view.html" in done.stderr
     done = CliRunner().invoke(app, ["view", "road.json", "campaign/runs/0001"])
-    assert (done.exit_code, done.stdout) == (0, "road-and-0001-view.html\n")
-    assert len(data_of((folder / "road-and-0001-view.html").read_text(encoding="utf-8"))) == 2
+    assert (done.exit_code, done.stdout) == (0, "road-and-campaign-0001-view.html\n")
+    assert len(data_of((folder / "road-and-campaign-0001-view.html").read_text(encoding="utf-8"))) == 2
 
 
 def test_only_a_scene_with_weather_puts_it_on_the_page(driven: Run) -> None:

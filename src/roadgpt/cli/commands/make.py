@@ -32,6 +32,7 @@ SEEDS = 1_000_000  # random seeds are below this number, so that they are short 
 
 RUN_OPTIONS = (
     Option("-n --roads", "Number of roads.", HOW_MANY, 1),
+    Option("-j --workers", "Roads driven at a time.", whole(1, 4096, "the number of workers"), 1),
     options.seed("The same seed gives the same roads. [default: random]"),
     options.out("Folder for the runs. [default: a new one]"),
     options.AGAIN,
@@ -39,7 +40,6 @@ RUN_OPTIONS = (
     Option("--route", "For a map of roads: where the car turns at junctions, such as left,right. [default: "
            "random]", str, "", metavar="TURN,...", heading=Heading.DESIGN, is_rare=True),
     *options.MAKING,
-    *named(options.WORKERS, "workers"),
     *(*options.CHAT, *options.GATE, options.JUNIT, *options.SCREEN),
 )  # fmt: skip
 
@@ -54,8 +54,7 @@ def run(
     """Make roads from a description: design, check, drive and judge them.
 
     \b
-    roadgpt run "an uphill road with 3 turns" -n 5
-    roadgpt run "two hairpins, then a straight" -n 20 --seed 7 --friction 0.6
+    roadgpt run "an uphill road with 3 turns" -n 20 -j 2 --seed 7 --friction 0.6
     roadgpt run "a winding road" --scenario "r157:cut_in slower=30"
 
     \b
