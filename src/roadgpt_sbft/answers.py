@@ -1,11 +1,12 @@
 """Serves test generators that run in other Python interpreters: computes what the competition computes, and
 designs roads. The client, ``names/roadgpt_client.py``, starts this module as ``python -m
-roadgpt_sbft.answers``; each request and each answer is one line of JSON. In RoadGPT's own interpreter,
-``answer`` is called directly.
+roadgpt_sbft.answers``; each request and each answer is one line of JSON. A generator that runs in RoadGPT's
+own interpreter is started here as well, and ``answer`` is called directly.
 """
 
 import sys
 from collections.abc import Callable, Iterator
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -123,7 +124,12 @@ OPS: dict[Any, Callable[..., Any]] = {
 
 
 def main() -> None:
-    """Answers requests until standard input is closed. Output of plug-ins goes to standard error."""
+    """Answers requests until standard input is closed. Output of plug-ins goes to standard error. If the
+    folder of the competition's names is given, runs a generator instead, which is answered here."""
+    if sys.argv[1:]:
+        sys.path.insert(0, sys.argv[1])
+        import_module("roadgpt_inside").Answering.here = answer
+        import_module("roadgpt_task").main()
     hears, tells = private_streams()
     for line in hears:
         asked = received(line)

@@ -39,7 +39,9 @@ class GeneratorProcess:
         inherited = {name: value for name, value in os.environ.items() if name not in (OURS, "PYTHONHOME")}
         try:
             self._process = children.start(
-                [python or sys.executable, str(NAMES)],
+                [sys.executable, "-P", "-m", "roadgpt_sbft.answers", str(NAMES)]
+                if python is None
+                else [python, str(NAMES)],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=self._log,

@@ -23,7 +23,6 @@ from roadgpt.brief.model import Brief
 from roadgpt.check import Finding, ribbon
 from roadgpt.check.extremes import tightest
 from roadgpt.check.finding import single_road
-from roadgpt.check.rules.no_overlap import overlap_with_itself
 from roadgpt.errors import UsageError
 from roadgpt.geometry import interpolate, radii, walked
 from roadgpt.network import Network
@@ -228,6 +227,8 @@ def _touching(
 ) -> Finding | None:
     if all(keeps_clear(ribbon.quads_of(*row)) for row in rows):
         return None
+    from roadgpt.check.rules.no_overlap import overlap_with_itself  # compiled code, which few roads need
+
     found, nearest, gap = overlap_with_itself(network.roads[0], world, SPLINE_REACH)
     if found is not None or gap >= SPLINE_REACH:  # far apart, or, in land, one above the other
         return None

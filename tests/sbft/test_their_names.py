@@ -10,8 +10,12 @@ import pytest
 from roadgpt.run.execution import FIELDS
 from roadgpt_sbft.generator_process import NAMES
 
-# The folder of names stands first on the path, as in a generator's process.
-HEAD = f"import sys; sys.path.insert(0, {str(NAMES)!r})\n"
+# The folder of names stands first on the path, and RoadGPT answers here, as in a generator's process.
+HEAD = (
+    f"import sys; sys.path.insert(0, {str(NAMES)!r})\n"
+    "import roadgpt_inside, roadgpt_sbft.answers\n"
+    "roadgpt_inside.Answering.here = roadgpt_sbft.answers.answer\n"
+)
 
 
 def told(code: str, folder: Path | None = None) -> str:

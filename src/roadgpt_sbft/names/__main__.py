@@ -7,6 +7,6 @@ if sys.version_info < (3, 8):
     sys.stdout.write('{"op": "end", "how": "unasked", "said": "%s"}\n' % said)
     sys.exit(0)
 
-from roadgpt_inside.task import main
+from roadgpt_task import main
 
 main()

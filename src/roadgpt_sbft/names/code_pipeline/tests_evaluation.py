@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Dict, Iterator, Sequence, Tuple
 
 from code_pipeline import test_analysis as features
-from roadgpt_inside.asking import ask
+from roadgpt_inside import ask
 from self_driving.simulation_data import SimulationDataRecord
 
 BEFORE_THRESHOLD = 60.0

@@ -10,7 +10,7 @@ from itertools import count
 from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
 from roadgpt_client import ClientError, plain
-from roadgpt_inside.asking import ask
+from roadgpt_inside import ask
 from self_driving.road_polygon import RoadPolygon
 
 rounding_precision = 3

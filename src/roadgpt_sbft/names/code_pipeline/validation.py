@@ -8,7 +8,7 @@ from typing import Any, Sequence, Tuple
 
 from code_pipeline.tests_generation import RoadTestFactory
 from roadgpt_client import ClientError
-from roadgpt_inside.asking import ask
+from roadgpt_inside import ask
 from self_driving.bbox import RoadBoundingBox
 
 FEET_PER_METRE = 3.280839895

@@ -2,7 +2,7 @@
 
 from pkgutil import extend_path
 
-from roadgpt_inside import checkout
+from roadgpt_inside import watch
 
 __path__ = extend_path(__path__, __name__)
-checkout.watch()
+watch()

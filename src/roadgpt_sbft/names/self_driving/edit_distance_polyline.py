@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import List, Sequence, Tuple
 
-from roadgpt_inside.asking import ask
+from roadgpt_inside import ask
 
 AngleLength = Tuple[float, float]
 ListOfAngleLength = List[AngleLength]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import Any, List, Sequence
 
-from roadgpt_inside.asking import ask
+from roadgpt_inside import ask
 from self_driving.road_points import RoadPoints
 
 

@@ -1,6 +1,7 @@
-"""Imports modules by the competition's names: RoadGPT's version of a module if there is one, otherwise the
-module in a checkout of the competition's code, as also single names that RoadGPT's module lacks. Most of
-these control BeamNG or the DAVE-2 network; generators do not need them in RoadGPT.
+"""What the modules with the competition's names have in common. They ask RoadGPT for every computation that
+needs more than the standard library. What they lack is taken from a checkout of the competition's code, whole
+modules as well as single names. Most of these control BeamNG or the DAVE-2 network; generators do not need
+them in RoadGPT.
 """
 
 from __future__ import annotations
@@ -10,14 +11,36 @@ from functools import partial
 from importlib.machinery import PathFinder, SourceFileLoader
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
-from typing import Any, List, Optional
+from typing import Any, Callable, List, Optional
 
-NAMES = Path(__file__).parent.parent  # the packages with the competition's names, and this one
+from roadgpt_client import ClientError, Message, RoadGPT
+
+NAMES = Path(__file__).parent  # the packages with the competition's names, and this module
 PACKAGES = ("code_pipeline", "self_driving")
 ADVICE = "put a checkout of the competition's code on PYTHONPATH, or do without it"
 
 BEAMNG = ("self_driving.vehicle_state_reader", "VehicleStateReader")
 """Module and name of a class that RoadGPT's version of the module lacks, because the class needs BeamNG."""
+
+
+class Answering:
+    """Who answers: RoadGPT in this interpreter, if it started this process in its own; otherwise a process of
+    RoadGPT. A forked process starts a RoadGPT of its own."""
+
+    here: Optional[Callable[[Message], Message]] = None
+    process: Optional[RoadGPT] = None
+
+
+def ask(op: str, **values: Any) -> Any:
+    """Returns RoadGPT's answer to a request for the operation ``op``."""
+    if Answering.here is not None:
+        answer = Answering.here({"op": op, **values})
+        if "error" in answer:
+            raise ClientError(answer["error"])
+        return answer["answer"]
+    if Answering.process is None or not Answering.process.is_ours:
+        Answering.process = RoadGPT()
+    return Answering.process.ask(op, **values)
 
 
 class _Loader(SourceFileLoader):
