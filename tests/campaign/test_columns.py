@@ -137,3 +137,9 @@ def test_chapters_stand_before_and_behind_those_of_the_report(register: Register
         assert f"It rained in {out.name}." in page
         assert page.index("It rained.") < page.index("Go on.")
     assert every["run"] == every["campaign"], "one report"
+    page = Path(roadgpt("report", tmp_path / "run" / "runs" / "0002").stdout.strip()).read_text("utf-8")
+    assert page.startswith("<!doctype html>")
+    assert "1 test: 1 FAIL." in page
+    assert "fastest_kmh" in page
+    brief = Path(roadgpt("report", tmp_path / "run" / "runs" / "0002", "--brief").stdout.strip())
+    assert "-n 2 --seed 7" in brief.read_text("utf-8"), "the command that makes this road, the second"

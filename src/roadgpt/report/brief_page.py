@@ -14,7 +14,9 @@ from roadgpt.report.page import BRIEF, html_of
 from roadgpt.report.page.maps import embedded_png
 from roadgpt.report.page.model import Block, Figure, Page, Section, ShellCommand, Table
 from roadgpt.report.report import card_of_tests, refuse_empty, summary_of, titles
+from roadgpt.report.road_record import named
 from roadgpt.run.atomic import write_whole
+from roadgpt.run.folder import is_run
 from roadgpt.run.model import permissions
 
 CELLS, SENTENCES = 6, 5  # that fit
@@ -77,16 +79,18 @@ def _worst(record: Record) -> Section:
     has_margin &= its.outcome == "PASS" or run.request.setup.keep_driving  # else the drive ended at the edge
     margin = f"Margin: {its.margin:.2f} m." if has_margin else ""
     numbers = ", ".join(f"{each.key} {each.value:.4g}" for each in told_of(its.features)[:TOLD])
-    test = f"{record.folder}/{worst[0]}"
+    test = named(record.folder, worst[0])
     drive = command_line("drive", "--again", test, *permissions([run.request.setup], replays=True))
-    told = f"Test {worst[0]}, {its.outcome}: {its.description}."
+    scenario = record.cell(worst[0].cell).scenario_of(its.proposal.origin)
+    told = f"Test {worst[0]}{f' ({scenario})' * bool(scenario)}, {its.outcome}: {its.description}."
     said = " ".join(filter(None, (told, cause, margin, numbers)))
     wide, high = figure.get_size_inches().tolist()
     picture = embedded_png(encoded(figure, "png"), wide, high, told)
     view = ShellCommand(command_line("view", test))
+    again = ["To drive it again: ", ShellCommand(drive), " "] * (not is_run(record.folder))
     blocks: list[Block] = [
         _cut(said, 2 * LONG),
         Figure("worst", "", picture),
-        ["To drive it again: ", ShellCommand(drive), " To see it in 3-D: ", view],
+        [*again, "To see it in 3-D: ", view],
     ]
     return Section("The worst case" if its.failed else "The case that came nearest to failing", blocks)

@@ -13,7 +13,7 @@ import numpy as np
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
 from roadgpt.campaign.folder_record import has_tests, open_record
-from roadgpt.campaign.model import MOST_TESTS, Cell, Result
+from roadgpt.campaign.model import MOST_TESTS, Cell, NumberedTest, Result
 from roadgpt.campaign.record import Record
 from roadgpt.check import inspect
 from roadgpt.check.measures import measure
@@ -164,6 +164,11 @@ def file_of(folder: Path, cell: str, number: int) -> str:
     names = [*(f"birds_eye.{kind}" for kind in FORMATS), "run.json"]
     paths = [f"{place}{name}".replace("//", "/").lstrip("/") for place in places for name in names]
     return next((path for path in paths if (folder / path).is_file()), "")
+
+
+def named(folder: Path, test: NumberedTest) -> str:
+    """Returns how commands name a test."""
+    return str(folder) if is_run(folder) else f"{folder}/{test}"
 
 
 def _road_of(

@@ -26,6 +26,7 @@ from roadgpt.report.page.model import (
     cell,
     linked,
 )
+from roadgpt.report.road_record import named
 from roadgpt.run import Run
 from roadgpt.run.model import permissions
 from roadgpt_search.faults.failures import FailureReason, reason_of
@@ -134,7 +135,7 @@ def _card(folder: Path, summary: FaultSummary, found: Faults) -> FigureCard:
         lines.append(f"Outside its lane at most: {percent(outside, 0)} of the car{beyond}.")
     if looked and looked.simplest:
         lines.append(f"Simplest road that fails in the same way: {looked.simplest}.")
-    lines.append([ShellCommand(command_line("view", f"{folder}/{summary.name}"))])
+    lines.append([ShellCommand(command_line("view", named(folder, summary.name)))])
     assert summary.run.road is not None
     station = summary.why.station if summary.why else fault.typical[0].station
     picture = draw_site(site_of(summary.run.road, summary.run.world, summary.run.drive, station), reason)

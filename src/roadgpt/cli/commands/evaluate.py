@@ -103,13 +103,16 @@ def write_report(folder: Path, is_brief: bool = False) -> Path:
 
 
 def command_of(folder: Path) -> str:
-    """Returns the command that repeats a campaign or a folder of runs; empty for runs without a description.
+    """Returns the command that repeats a run, runs or a campaign; empty for runs without a description.
     Options cannot express some campaigns, such as a campaign with several cells; for these, returns the
     command that resumes the campaign."""
     from roadgpt.campaign.folder_record import open_record
     from roadgpt.campaign.model import WITH_GOAL, WITHOUT_GOAL
-    from roadgpt.cli.repeat_commands import request_words
+    from roadgpt.cli.repeat_commands import replay_lines, request_words
+    from roadgpt.run.folder import is_run, read_run
 
+    if is_run(folder):
+        return next(iter(replay_lines(read_run(folder), folder)), "")
     with open_record(folder) as record:
         cells, resume = record.cells(), record.to_resume()
     only, n = cells[0], cells[0].budget.tests

@@ -25,7 +25,7 @@ from roadgpt.report.chapters.wording import (
 )
 from roadgpt.report.page.charts import bars, lines
 from roadgpt.report.page.model import Block, Figure, Section, Table, TableCell, cell, linked
-from roadgpt.report.road_record import file_of
+from roadgpt.report.road_record import file_of, named
 from roadgpt.report.statistics import chi_squared
 
 MOST_CELLS = 12  # whose curves and shares are drawn
@@ -156,7 +156,7 @@ def _worst(record: Record, done: int, drives_on: bool) -> Table:
     note = "Failures first, " + ("the farthest out before others" if drives_on else "in order")
     note += ", then the drives that came nearest to failing."
     if rows:
-        note += f" To see one: {command_line('view', f'{folder}/{rows[0][0].value}')}"
+        note += f" To see one: {command_line('view', named(folder, NumberedTest(*some[0][:2])))}"
     heads = ["test", "outcome", "outside at most", "margin, m", "cause", "at, m", *keys, "what happened"]
     caption = f"The worst {len(rows)} of {plural(done, 'test')}" if len(rows) < done else "All tests"
     return Table("failures", caption, heads, rows, note)
