@@ -65,11 +65,8 @@ class Script:
         """Puts those ahead in the tested car's lane behind one another where the scene leaves open where they
         are: who stands beyond whom, and who drives beyond those who stand. Who stands behind somebody that
         leaves the lane is as far from it, where that happens, as the scene says."""
-        ahead = [
-            each
-            for each in everybody
-            if each.role.where == "ahead" and each.course.is_along and not each.role.at
-        ]
+        along = [each for each in everybody if each.course.is_along]
+        ahead = [each for each in along if each.role.where == "ahead" and not each.role.at]
         leavers = [each for each in ahead if each.first in LEAVES and each.longitudinal.v > 0]
         last: Placing | None = None
         for each in ahead:
@@ -89,14 +86,9 @@ class Script:
             v, is_open = each.longitudinal.v, each.first not in LEAVES and not each.is_placed
             if last and v > 0 and is_open and each.course.s < last.course.s:
                 each.put(last.course.s + each.between(last) + BEHIND * v)
-        onto = [
-            each
-            for each in everybody
-            if each.course.forward < 0 and each.course.is_along and not each.is_placed
-        ]
-        late = [
-            each.course.s + each.size.length / 2 - self._way.length for each in onto if each.first in HEAD_ON
-        ]
+        onto = [each for each in along if each.course.forward < 0 and not each.is_placed]
+        ends = self._way.length
+        late = [each.course.s + each.size.length / 2 - ends for each in onto if each.first in HEAD_ON]
         spare = min((each.course.s - each.met.s - each.half - ONCOMING for each in onto), default=0.0)
         nearer = min(max(late, default=0.0), spare)
         for each in onto if nearer > 0 else ():  # so that what they begin happens on a short road, too

@@ -19,11 +19,11 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roadgpt.brief.visibility import visual_range, weather_drawn
 from roadgpt.drive import company
 from roadgpt.geometry.boxes import separation
+from roadgpt.geometry.curve import Array
 from roadgpt.language.table import VEHICLES
 from roadgpt.network import legs_of, network_of
 from roadgpt.network.landscape import horizon_around
@@ -40,8 +40,6 @@ if TYPE_CHECKING:
     from roadgpt.road import Road, World
     from roadgpt.road.world import Avoider
 
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 COLLIDES = "collides"
 FINE = 0.01  # s, from one step of a driver to the next
@@ -305,9 +303,7 @@ class _Encounter:
         return ""
 
 
-def _way(
-    drive: "Drive", lane: Line, begin: float, contact: float
-) -> tuple[Line, FloatArray, FloatArray, float]:
+def _way(drive: "Drive", lane: Line, begin: float, contact: float) -> tuple[Line, Array, Array, float]:
     """Returns the way of the middle of the tested car's box up to the contact and along its lane, the times
     and stations at which it was there, and how far it was to the left of its lane's middle at last."""
     time, (x, y, heading) = drive["time"], drive.middles.T

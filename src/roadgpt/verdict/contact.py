@@ -17,14 +17,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.geometry.boxes import corners, separation, turned
+from roadgpt.geometry.curve import Array
 from roadgpt.network.lanes import HEADROOM
 from roadgpt.traffic.actor import HEADING, SPEED, STEP, X, Y, Z
+from roadgpt.verdict.oracle import BoolArray
 from roadgpt.verdict.verdict import STANDS, Contact, Face, Incident
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
 
-FloatArray = NDArray[np.float64]
 
 TOUCH = 1e-3  # m; positions of tracks are rounded to it
 SLACK = 1.0  # m, by which the car's way between two samples of a track may differ from a straight line
@@ -41,7 +42,7 @@ def contacts_of(drive: "Drive") -> tuple[Incident, ...]:
     return tuple(sorted((_described(drive, *row) for row in rows), key=lambda each: each.at_time))
 
 
-def _first_contacts(drive: "Drive") -> tuple[NDArray[np.int64], NDArray[np.int64], FloatArray]:
+def _first_contacts(drive: "Drive") -> tuple[NDArray[np.int64], NDArray[np.int64], Array]:
     """Returns step, actor and share of the way to the next step of the first contacts, one for each actor."""
     assert drive.others is not None
     others, time, car = drive.others, drive["time"], drive.middles
@@ -76,7 +77,7 @@ def _first_contacts(drive: "Drive") -> tuple[NDArray[np.int64], NDArray[np.int64
     return step[chosen], actor[chosen], share[chosen]
 
 
-def _is_near(drive: "Drive", car: FloatArray, reach: FloatArray) -> NDArray[np.bool_]:
+def _is_near(drive: "Drive", car: Array, reach: Array) -> BoolArray:
     """Returns for each step and actor whether they may touch between the samples of the track around it,
     shape (steps, actors); ``reach`` is the sum of the radii around the boxes."""
     assert drive.others is not None
@@ -95,7 +96,7 @@ def _described(drive: "Drive", step: int, number: int, share: float) -> Incident
     assert drive.others is not None
     actor, last = drive.others.actors[number], min(step + 1, len(drive) - 1)
 
-    def between(values: FloatArray) -> FloatArray:
+    def between(values: Array) -> Array:
         return np.asarray((1 - share) * values[step] + share * values[last])
 
     time = float(between(drive["time"]))
@@ -144,7 +145,7 @@ def _described(drive: "Drive", step: int, number: int, share: float) -> Incident
     )
 
 
-def _face(mine: int, away: FloatArray, heading: FloatArray, apart: FloatArray, spot: FloatArray) -> Face:
+def _face(mine: int, away: Array, heading: Array, apart: Array, spot: Array) -> Face:
     """Returns with which side box ``mine``, 0 or 1, met the other, which is ``away`` from it: that along the
     line on which both are ``apart`` the most. A corner that meets a side is one of the front or the rear, as
     with nuPlan; ``spot`` is where it is."""

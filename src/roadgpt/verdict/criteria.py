@@ -10,12 +10,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry import wrap_angle
+from roadgpt.geometry.curve import Array
 from roadgpt.network import legs_of, network_of, only_road
-from roadgpt.verdict.oracle import is_outside
+from roadgpt.verdict.oracle import BoolArray, is_outside
 from roadgpt.verdict.verdict import STANDS, Cause, Incident, IncidentKind
 
 if TYPE_CHECKING:
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 SUCCESS, LEFT = "Successful test", "Car drove out of the lane"
 """The competition's own words, to which it adds the name of the simulation. For the competition, a car that
 falls has left the lane; it has neither signs, lights nor others, so that those of a collision are ours."""
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 GONE = 0.9  # share of the car outside its lane; a car that slides wide and comes back took no wrong turn
 ALONG = math.radians(30.0)  # between the heading of the car and that of a wrong road on which it drives
@@ -68,7 +66,7 @@ class Judged:
         return measure(self.road, self.drive, self.world)
 
     @cached_property
-    def speed(self) -> FloatArray:
+    def speed(self) -> Array:
         """The tested car's speed at the times of ``measured``."""
         return np.interp(self.measured.time, self.drive["time"], self.drive["speed"])
 
@@ -131,7 +129,7 @@ def _speeding(case: Judged) -> list[Incident]:
     return case.began("speeding", _lasting(case.drive["time"], fast, TOO_FAST))
 
 
-def limits_at(road: "Road", world: "World", s: FloatArray) -> FloatArray:
+def limits_at(road: "Road", world: "World", s: Array) -> Array:
     """Returns the speed limit in m/s, at these stations, of the lane that the tested car is to follow."""
     from roadgpt.drive.outlook import limits_of
 
@@ -139,7 +137,7 @@ def limits_at(road: "Road", world: "World", s: FloatArray) -> FloatArray:
     return np.asarray(np.array(limits)[np.searchsorted(starts[1:], s, "right")])
 
 
-def _lasting(time: FloatArray, holds: BoolArray, least: float = 0.0) -> list[float]:
+def _lasting(time: Array, holds: BoolArray, least: float = 0.0) -> list[float]:
     """Returns when a condition began that then held for ``least`` seconds."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], holds, [False]])))
     stretches = zip(edges[::2], edges[1::2] - 1, strict=True)

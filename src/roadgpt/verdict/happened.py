@@ -12,7 +12,6 @@ from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roadgpt.brief.visibility import weather_drawn
 from roadgpt.drive.company import heights_along, look, looks_of
@@ -22,6 +21,7 @@ from roadgpt.traffic.actor import STEP, Size
 from roadgpt.traffic.rehearsal import rehearsed
 from roadgpt.traffic.traffic import NEVER
 from roadgpt.verdict.measures import measure
+from roadgpt.verdict.oracle import BoolArray
 from roadgpt.verdict.verdict import Outcome
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ def _wrong_speed(road: "Road", drive: "Drive", world: "World", until: float) -> 
     return f"this one was {why}: {worst:.0f} km/h, from {s[since[0]]:.0f} m on"
 
 
-def _is_called(road: "Road", drive: "Drive", world: "World", where: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _is_called(road: "Road", drive: "Drive", world: "World", where: BoolArray) -> BoolArray:
     """Returns at which of the times that are asked for somebody whom the driver sees calls for less."""
     assert drive.others is not None
     measured = measure(road, drive, world)

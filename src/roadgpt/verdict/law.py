@@ -13,8 +13,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roadgpt.geometry.curve import Array
 from roadgpt.language.table import PERSONS, VEHICLES
 from roadgpt.network import legs_of, network_of, only_road
 from roadgpt.network.lanes import lanes_of
@@ -78,7 +78,7 @@ def fault_of(law: Law, contact: Contact, is_own_doing: bool) -> Fault:
     return ("both" if its else "ego") if own else "other" if its else "nobody"
 
 
-def _is_fast(speed: NDArray[np.float64], limit: NDArray[np.float64] | float, step: float) -> bool:
+def _is_fast(speed: Array, limit: Array | float, step: float) -> bool:
     return bool(((speed > OVER * limit) & (speed > limit + OVER_BY)).sum() * step >= TOO_FAST)
 
 

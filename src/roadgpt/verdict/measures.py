@@ -30,16 +30,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.geometry import boxes
+from roadgpt.geometry.curve import Array
 from roadgpt.network.lanes import HEADROOM
 from roadgpt.network.line import Boxes, Line, driven_line
 from roadgpt.traffic.actor import HEADING, STEP, X, Y, Z
+from roadgpt.verdict.oracle import BoolArray
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
     from roadgpt.road import Road, World
 
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 EVEN = 0.02  # m/s; speeds that differ by less are equal, but for rounding
 NEAR = 150.0  # m, beyond which others are not measured: 4 s at 130 km/h
@@ -51,23 +51,23 @@ class Measures:
     """Measures of a drive of shape (times, actors), infinite where they do not apply, or where the other is
     not there or more than NEAR away."""
 
-    time: FloatArray
+    time: Array
     """Times in seconds, shape (times,)."""
-    ttc: FloatArray
+    ttc: Array
     """Time to collision in seconds."""
-    conflict: FloatArray
+    conflict: Array
     """Conflict time in seconds."""
-    headway: FloatArray
+    headway: Array
     """Time headway in seconds."""
-    deceleration: FloatArray
+    deceleration: Array
     """Required deceleration in m/s^2; 0 where none is required or nobody is ahead in the same lane."""
-    gap: FloatArray
+    gap: Array
     """From bumper to bumper along the lane in metres, of others ahead in the same lane."""
-    distance: FloatArray
+    distance: Array
     """Distance between the boxes in metres."""
-    pet: FloatArray
+    pet: Array
     """The smallest post-encroachment time in seconds, shape (actors,)."""
-    pet_time: FloatArray
+    pet_time: Array
     """When the first one had left the area, in seconds, shape (actors,); NaN without a post-encroachment
     time."""
     lane: Line
@@ -113,7 +113,7 @@ def measure(road: "Road", drive: "Drive", world: "World") -> Measures:
         needed = np.where(ahead, _required(gap, rate, its, gained), 0.0)
     pets = [_pet(time, car, others, step, who == each) for each in range(len(sizes))]
 
-    def spread(values: FloatArray, without: float = np.inf) -> FloatArray:
+    def spread(values: Array, without: float = np.inf) -> Array:
         out = np.full(near.shape + values.shape[1:], without)
         out[near] = values
         return out
@@ -134,7 +134,7 @@ def measure(road: "Road", drive: "Drive", world: "World") -> Measures:
     )
 
 
-def _required(gap: FloatArray, rate: FloatArray, its: FloatArray, gained: FloatArray) -> FloatArray:
+def _required(gap: Array, rate: Array, its: Array, gained: Array) -> Array:
     closing = np.maximum(rate - its, 0.0)
     brakes, stops = gained < 0, -its / gained
     moving = closing**2 / (2 * gap) - gained
@@ -146,7 +146,7 @@ def _required(gap: FloatArray, rate: FloatArray, its: FloatArray, gained: FloatA
     return np.asarray(np.where((its < 0) & (closing > 0), np.inf, needed))
 
 
-def _conflict(own: Boxes, others: Boxes) -> FloatArray:
+def _conflict(own: Boxes, others: Boxes) -> Array:
     """Until two boxes that move evenly, without turning, touch: the last of the times at which they begin to
     overlap along the normals of their sides, if it is before the first at which they cease to."""
     away = np.stack([others.along - own.along, others.t - own.t], axis=-1)
@@ -163,7 +163,7 @@ def _conflict(own: Boxes, others: Boxes) -> FloatArray:
 
 
 def _pet(
-    time: FloatArray, car: Boxes, others: Boxes, step: NDArray[np.int64], own: BoolArray
+    time: Array, car: Boxes, others: Boxes, step: NDArray[np.int64], own: BoolArray
 ) -> tuple[float, float]:
     """Returns the smallest post-encroachment time of one of the others, whose rows are ``own``, and when the
     first one had left the area."""

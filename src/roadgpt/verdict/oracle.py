@@ -24,32 +24,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.geometry import wrap_angle
-from roadgpt.geometry.curve import LEAST_STRETCH
+from roadgpt.geometry.curve import LEAST_STRETCH, Array
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
     from roadgpt.road import Road, World
 
 ROUNDING = 1e-3  # m, error of the poses in a stored drive, which are rounded
-FloatArray = NDArray[np.float64]
 THINNEST = 1e-9  # m, lower bound of a half-width, for a box seen exactly end-on
+BoolArray = NDArray[np.bool_]
 EPSILON = 1e-9  # m; a negative margin is at least this far below 0
 
 
 class Oracle(NamedTuple):
     """How far the car was out of its lane during a drive: arrays of shape ``(n,)``, one value per step."""
 
-    is_oob: NDArray[np.bool_]
+    is_oob: BoolArray
     """Whether the car is out of its lane, as ``is_outside`` defines it; not at the step at which it reaches
     the goal or is stuck, at which the competition does not check the lane."""
     oob_counter: NDArray[np.int64]
     """Number of times the car has gone out of its lane so far."""
-    max_oob_percentage: NDArray[np.float64]
+    max_oob_percentage: Array
     """Largest share of the car outside its lane, 0 to 1, since it last went out of it, as in the
     competition's code; 0 until it first does."""
-    oob_distance: NDArray[np.float64]
+    oob_distance: Array
     """Half the width of the lane minus the distance of the car's centre from the lane's middle, in metres."""
-    oob_percentage: NDArray[np.float64]
+    oob_percentage: Array
     """Share of the car's bounding box outside its lane, 0 to 1."""
 
 
@@ -70,16 +70,16 @@ def consult(road: "Road", drive: "Drive", world: "World") -> Oracle:
     return Oracle(out, counter.astype(np.int64), largest, distance, share)
 
 
-def is_outside(road: "Road", drive: "Drive", world: "World") -> NDArray[np.bool_]:
+def is_outside(road: "Road", drive: "Drive", world: "World") -> BoolArray:
     """Returns for each step whether the share of the car's bounding box outside its lane exceeds the
     tolerance, or a front tyre is beyond a lane marking, if ``World.limits.lane_departure`` is set."""
-    out: NDArray[np.bool_] = drive["outside"] > world.limits.oob_tolerance
+    out: BoolArray = drive["outside"] > world.limits.oob_tolerance
     out |= has_departed(road, drive, world)
     out[drive.lane_steps :] = False
     return out
 
 
-def has_departed(road: "Road", drive: "Drive", world: "World") -> NDArray[np.bool_]:
+def has_departed(road: "Road", drive: "Drive", world: "World") -> BoolArray:
     """Returns for each step whether the outer edge of a front tyre is beyond the outer edge of a marking;
     never if ``world.limits.lane_departure`` is not set."""
     if not world.limits.lane_departure:
@@ -87,7 +87,7 @@ def has_departed(road: "Road", drive: "Drive", world: "World") -> NDArray[np.boo
     from roadgpt.drive.lane_position import MarkingMonitor
 
     beyond = MarkingMonitor.for_tyres(road, world, drive.car).along(drive)
-    gone: NDArray[np.bool_] = beyond > 0
+    gone: BoolArray = beyond > 0
     # A drive that ended with a departure has departed at its last step, in spite of rounding.
     gone[-1] |= drive.ended == "out_of_lane" and beyond[-1] > -ROUNDING
     return gone
@@ -96,12 +96,12 @@ def has_departed(road: "Road", drive: "Drive", world: "World") -> NDArray[np.boo
 class LateralExtent(NamedTuple):
     """The extent of the car's bounding box across the lane at each of the n steps of a drive."""
 
-    middle: FloatArray
+    middle: Array
     """Offset of the box's middle in metres to the left of the centre line, corrected for the curvature of the
     lane under the box; shape ``(n,)``."""
-    long: FloatArray
+    long: Array
     """Half of the larger of the projections of its length and its width across the lane, in metres."""
-    short: FloatArray
+    short: Array
     """Half of the smaller one."""
 
 
@@ -119,7 +119,7 @@ def lateral_extent(road: "Road", drive: "Drive") -> LateralExtent:
     return LateralExtent(middle, np.maximum(a, b), np.maximum(np.minimum(a, b), THINNEST))
 
 
-def allowed_overhang(tolerance: float, box: LateralExtent) -> FloatArray:
+def allowed_overhang(tolerance: float, box: LateralExtent) -> Array:
     """Returns how far beyond the lane's edge, in metres outwards, the middle of the box is when the share of
     the box outside the lane equals ``tolerance`` (0 to 1), and the car fails."""
     tail = min(tolerance, 1 - tolerance)
@@ -130,7 +130,7 @@ def allowed_overhang(tolerance: float, box: LateralExtent) -> FloatArray:
     return np.asarray(far if tolerance >= 0.5 else -far, float)
 
 
-def margins(road: "Road", drive: "Drive", world: "World") -> FloatArray:
+def margins(road: "Road", drive: "Drive", world: "World") -> Array:
     """Returns the margin in metres at every step of a drive, shape ``(n,)``: negative exactly where the car
     is out of its lane, and 0 where it is not, but its box extends beyond the carriageway and its shoulder."""
     box = lateral_extent(road, drive)
