@@ -22,8 +22,8 @@ from roadgpt.campaign import campaign
 from roadgpt.campaign.record import STORE, Record, Store
 from roadgpt.campaign.workers import InProcess
 from roadgpt.cli import app
-from roadgpt.drive.driver_files import WRITTEN
 from roadgpt.drive.isolation import driver_of
+from roadgpt.drive.loading import WRITTEN
 from roadgpt.errors import UsageError
 from roadgpt.reading import digest
 from roadgpt.run import Run, Setup, read_run, versions

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from command_line import roadgpt
-from roadgpt.campaign.status import NO_FAILURE, no_failure
+from roadgpt.campaign.model import NO_FAILURE, no_failure
 
 WORDS = ("turn x2", "--reader", "plan", "--seed", "5")
 

@@ -8,7 +8,6 @@ from math import inf
 from typing import Any, get_args
 
 from roadgpt.brief.amount import meets, span
-from roadgpt.brief.junction_check import faults_of_junction
 from roadgpt.brief.junctions import ARMS, LANE_KINDS, RAMPS, SIGNS, JunctionClause
 from roadgpt.brief.model import OF_THE_WORDS, Brief, at_least, exactly
 from roadgpt.brief.outline import outline
@@ -71,6 +70,8 @@ def _signs(place: JunctionClause, roles: Sequence[Role]) -> dict[str, Any]:
 
 def _possible(place: JunctionClause, told: Take | None) -> Iterator[JunctionClause]:
     """Yields the junctions that the words about one can mean, by its kind, the way taken and the ways on."""
+    from roadgpt.brief.junction_check import faults_of_junction
+
     kinds: tuple[JunctionKind, ...] = (place.kind,)
     if place.kind == "junction":
         kinds = ("t_junction", "crossroads", "star") if place.ways else ("crossroads", "t_junction", "star")

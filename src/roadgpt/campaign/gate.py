@@ -10,9 +10,7 @@ from typing import Any, NamedTuple, get_args
 import numpy as np
 import scipy
 
-from roadgpt.campaign.folder_record import open_record
 from roadgpt.campaign.model import NumberedTest, Result
-from roadgpt.campaign.status import status_of
 from roadgpt.drive.loading import without_folder
 from roadgpt.errors import GateError, RoadGPTError, UsageError
 from roadgpt.geometry.curve import Array
@@ -71,6 +69,8 @@ class Gate:
 
     def add_folder(self, folder: Path) -> None:
         """Counts the tests of a campaign or a folder of runs."""
+        from roadgpt.campaign.status import status_of
+
         self._counts.update(status_of(folder).outcomes)
         for name, result in _results(folder) if self._baseline else ():
             self._compare(f"{folder}/{name}", result)
@@ -143,6 +143,8 @@ class Gate:
 
 
 def _results(folder: Path) -> Iterator[tuple[NumberedTest, _Result]]:
+    from roadgpt.campaign.folder_record import open_record
+
     with open_record(folder) as record:
         for cell in record.cells():
             for its in record.results(cell.name):

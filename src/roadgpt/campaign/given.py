@@ -8,15 +8,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import TypeAdapter
 
 from roadgpt.campaign.model import GivenRoad
 from roadgpt.errors import UsageError
-from roadgpt.network.source import RoadSource, source_in
 from roadgpt.reading import ABSENT, json_of, read_bytes
 from roadgpt.run.atomic import json_text, to_bytes, whole_folder
+
+if TYPE_CHECKING:
+    from roadgpt.network.source import RoadSource
 
 FOLDER = "roads"
 
@@ -62,8 +64,10 @@ def content_of(road: GivenRoad, folder: Path) -> bytes:
     return content
 
 
-def source_of(road: GivenRoad, content: bytes) -> RoadSource:
+def source_of(road: GivenRoad, content: bytes) -> "RoadSource":
     """Returns what the file of a road holds."""
+    from roadgpt.network.source import source_in
+
     found = source_in(road.name, json_of(content.decode()), {}, Path(road.file))
     if isinstance(found, UsageError):
         raise found

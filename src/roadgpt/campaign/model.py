@@ -2,19 +2,23 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Annotated, Any, Literal, NamedTuple, Protocol, TypeVar, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Protocol, TypeVar, get_args
 
 from pydantic import Field
 
 from roadgpt.brief.model import Brief, Frozen
 from roadgpt.brief.plan import read_plan
-from roadgpt.brief.scenarios import LANE_WIDTH, Scenario, points_of, scenario
 from roadgpt.road import Design, World
 from roadgpt.run.model import Outcome, Request
 from roadgpt.verdict.verdict import Cause, Side
 
+if TYPE_CHECKING:
+    from roadgpt.brief.scenarios import Scenario
+
 Goal = Literal["failures", "coverage", "hardest", "boundary"]
 """The goal of a search; a cell without a goal makes the requested number of roads and does not search."""
+FEWEST = 5  # passed tests; if there are fewer, it is no surprise that none failed
+NO_FAILURE = "No road failed: `roadgpt campaign --goal failures` searches for one."
 GOALS: tuple[Goal, ...] = get_args(Goal)
 
 WITHOUT_GOAL, WITH_GOAL = "words", "quality_diversity"
@@ -150,12 +154,14 @@ class Cell:
     """Whether each test has a folder of files, and differs from all earlier ones, as in ``roadgpt run``."""
 
     @property
-    def points(self) -> tuple[tuple[Scenario, ...], int]:
+    def points(self) -> "tuple[tuple[Scenario, ...], int]":
         """The scenarios of its tests, with the values of their parameters, and how many points of their grids
         are left out; none if it does not test any."""
         if "scenario" not in self.settings:
             return (), 0
         grid = self.settings.get("grid", "nominal")
+        from roadgpt.brief.scenarios import points_of
+
         return points_of(self.settings["scenario"], grid, not self.request.words)
 
     def scenario_of(self, origin: str) -> str:
@@ -167,6 +173,7 @@ class Cell:
         without a description its road the nominal one."""
         if "scenario" not in self.settings:
             return self
+        from roadgpt.brief.scenarios import LANE_WIDTH, scenario
         from roadgpt.design.room import world_for  # most campaigns do not need it here
 
         one = scenario(proposal.origin)
@@ -210,3 +217,8 @@ class Generator(Protocol):
     def tell(self, results: Sequence[Result]) -> None:
         """Receives the results of one batch, in order of the test numbers, in less than 1 ms per result."""
         ...
+
+
+def no_failure(outcomes: Mapping[str, int]) -> list[str]:
+    """Returns the sentence for tests of which none failed and five or more passed; nothing for others."""
+    return [] if outcomes.get("FAIL") or outcomes.get("PASS", 0) < FEWEST else [NO_FAILURE]

@@ -37,7 +37,6 @@ from typing import TYPE_CHECKING, Any, Self, get_args
 import numpy as np
 from pydantic import TypeAdapter
 
-from roadgpt.campaign.given import content_of, source_of
 from roadgpt.campaign.model import Cell, GivenRoad, NumberedTest, Proposal, Result
 from roadgpt.campaign.single_test import (
     OF_VERDICT,
@@ -396,6 +395,8 @@ class Record:
     def _blueprint(self, cell: Cell, result: Result) -> tuple[Design | Road | None, Request]:
         if not isinstance(result.design, GivenRoad):
             return result.design, cell.request
+        from roadgpt.campaign.given import content_of, source_of
+
         source = source_of(result.design, content_of(result.design, self.folder))
         world = cell.request.world.changed(**source.world)
         return source.blueprint, cell.request.model_copy(update={"world": world})

@@ -11,7 +11,6 @@ from dataclasses import replace
 from typing import Any, NamedTuple, TypeVar
 
 from roadgpt import plugins
-from roadgpt.campaign.given import content_of
 from roadgpt.campaign.model import Cell, GivenRoad, Pool, Result
 from roadgpt.campaign.model import Generator as TestGenerator
 from roadgpt.campaign.record import Batch, Store
@@ -323,7 +322,11 @@ class Scheduler:
         each = allowance or self._share(2 * max(len(tests), 1))
         for test in tests:
             road = test.proposal.design
-            file = content_of(road, schedule.store.folder) if isinstance(road, GivenRoad) else b""
+            file = b""
+            if isinstance(road, GivenRoad):
+                from roadgpt.campaign.given import content_of
+
+                file = content_of(road, schedule.store.folder)
             test = replace(test, allowance=each, road=file)
             if schedule.cell.keeps_runs:
                 try:

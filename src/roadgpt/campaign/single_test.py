@@ -5,11 +5,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from roadgpt.campaign.given import source_of
 from roadgpt.campaign.model import GIVEN, Cell, GivenRoad, Proposal, Result
 from roadgpt.chat import ChatError, Meter, ReplyError, Spent
 from roadgpt.errors import BudgetError, DesignError, PartError, RoadGPTError, UsageError
-from roadgpt.network.source import RoadSource
 from roadgpt.plural import plural
 from roadgpt.provenance import NameOrigins, join, known
 from roadgpt.road import Design
@@ -17,6 +15,7 @@ from roadgpt.run import REFUSED, Run, Seconds, Setup, check_parts, drafted, driv
 
 if TYPE_CHECKING:
     from roadgpt.campaign.traces import Trace
+    from roadgpt.network.source import RoadSource
 
 CONCERNS_ALL = (PartError, UsageError, ChatError)  # errors that are not due to one test
 
@@ -125,6 +124,8 @@ def run_test(task: Task, cell: Cell, earlier: tuple[tuple[Design, ...], ...], me
         cell = cell.of_test(proposal)
         world, setup = cell.request.world, cell.request.setup
         if isinstance(proposal.design, GivenRoad):
+            from roadgpt.campaign.given import source_of
+
             return _run_of_given(source_of(proposal.design, task.road), task, cell)
         if proposal.design is not None:
             return prove(proposal.design, proposal.seed, world, setup, task.number, cell.brief)
@@ -155,7 +156,7 @@ def draft(task: Task, cell: Cell, earlier: Sequence[Design], meter: Meter) -> Ru
         return replace(error_run(task, cell, str(error)), spent=spent if spent.calls else None)
 
 
-def _run_of_given(source: RoadSource, task: Task, cell: Cell) -> Run:
+def _run_of_given(source: "RoadSource", task: Task, cell: Cell) -> Run:
     """Returns the Run of a road that was given. As roads of real maps break many rules, it is driven despite
     them, and the description names them."""
     world, setup = cell.request.world.changed(**source.world), cell.request.setup

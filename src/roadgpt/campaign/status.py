@@ -17,8 +17,6 @@ FRESH = 15.0  # s since the store was last written; a working process writes it 
 LATELY = 60.0  # s over which the current rate is averaged
 ONE_SIDED = 0.05  # share of driven roads; if fewer passed, or fewer failed, there is hardly a boundary
 NOTHING = (None, 0, 0, None, None)  # of a cell in which no test passed
-FEWEST = 5  # passed tests; if there are fewer, it is no surprise that none failed
-NO_FAILURE = "No road failed: `roadgpt campaign --goal failures` searches for one."
 
 
 @dataclass(frozen=True)
@@ -122,11 +120,6 @@ class Status:
             "done": self.done,
             "seconds_left": self.seconds_left,
         }
-
-
-def no_failure(outcomes: Mapping[str, int]) -> list[str]:
-    """Returns the sentence for tests of which none failed and five or more passed; nothing for others."""
-    return [] if outcomes.get("FAIL") or outcomes.get("PASS", 0) < FEWEST else [NO_FAILURE]
 
 
 def cell_statuses(record: Record) -> tuple[CellStatus, ...]:

@@ -12,15 +12,17 @@ and are sent to the server only."""
 import inspect
 from collections.abc import Sequence
 from functools import cache
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from pydantic import BaseModel
 
 from roadgpt import plugins
-from roadgpt.chat.config import configured
 from roadgpt.chat.meter import Meter, counting
 from roadgpt.chat.model import ChatSettings, Message, Reply, Spent, Usage
 from roadgpt.errors import BudgetError, ChatError, RefusedError, ReplyError, UnparsableError, UsageError
+
+if TYPE_CHECKING:
+    from roadgpt.chat.config import configured
 
 __all__ = [
     "BudgetError",
@@ -80,6 +82,8 @@ def open_chat(settings: ChatSettings) -> Chat:
     if settings.replay is not None:
         replayed: Chat = plugins.find("providers", "replay")(settings)
         return replayed
+    from roadgpt.chat.config import configured
+
     usual = configured()
     open_fields = [name for name in ("model", "base_url") if getattr(settings, name) is None]
     settings = settings.model_copy(update={name: getattr(usual, name) for name in open_fields})
@@ -102,7 +106,11 @@ def plugin_of(kind: str, name: str, settings: ChatSettings | None = None) -> Any
 
     A class that takes ChatSettings gets ``settings``; if ``settings`` is None, the class gets the settings
     that the user has configured. A plug-in that cannot be called is returned unchanged."""
-    return _made(kind, name, (settings or configured()) if asks_a_model(plugins.find(kind, name)) else None)
+    if not asks_a_model(plugins.find(kind, name)):
+        return _made(kind, name, None)
+    from roadgpt.chat.config import configured
+
+    return _made(kind, name, settings or configured())
 
 
 @cache
@@ -111,3 +119,11 @@ def _made(kind: str, name: str, settings: ChatSettings | None) -> Any:
     if settings is not None:
         return part(settings)
     return part() if callable(part) else part
+
+
+def __getattr__(name: str) -> Any:
+    if name != "configured":
+        raise AttributeError(f"roadgpt.chat has no '{name}'; it offers {', '.join(__all__)}")
+    from roadgpt.chat.config import configured
+
+    return configured

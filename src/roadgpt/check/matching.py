@@ -22,7 +22,6 @@ from typing import NamedTuple
 
 from roadgpt.brief.amount import about
 from roadgpt.brief.design_speed import SpeedLimits
-from roadgpt.brief.junction_check import TURN_LENGTHS
 from roadgpt.brief.junctions import (
     LANE_KINDS,
     NAMES,
@@ -508,6 +507,8 @@ def _of_ramp(found: MeasuredJunction, asked: JunctionClause) -> Iterator[str]:
 
 
 def _of_turn_lanes(found: MeasuredJunction, asked: JunctionClause) -> Iterator[str]:
+    from roadgpt.brief.junction_check import TURN_LENGTHS
+
     allowed = TURN_LENGTHS if asked.turn_length is None else length_range(asked.turn_length)
     for side in asked.turn_lanes:
         length = max((own for way, own in found.turn_lanes if way == side), default=None)

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
 OF_FOLDER, OF_USER, OF_ENVIRONMENT = "folder", "user", "environment"
 YOURSELF = "a file of this folder cannot decide that; say it yourself with the option"
+ENDINGS = (".json", ".jsonl", ".xodr", ".csv", ".tsv", ".sbft")  # of road files
 WHOLE_PATH = "give the whole path, from the root of the disk"
 Guard = Callable[[str, str], str]
 """Takes a value and its source, such as ``OF_FOLDER``, and says why it is refused; empty if it is not."""
@@ -355,9 +356,11 @@ def scene(value: str) -> str:
 
 def scenario(value: str) -> str:
     """Returns the name of a scenario with the parameters that are given."""
+    if not value:
+        return ""
     from roadgpt.brief.scenarios import scenario as of_catalogue
 
-    return str(of_catalogue(value)) if value else ""
+    return str(of_catalogue(value))
 
 
 def folder(value: str) -> Path:
@@ -712,10 +715,12 @@ def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "Ch
     told = chat_values(values)
     for each in CHAT:
         values.pop(each.field, None)
-    from roadgpt.chat import asks_a_model, configured
+    from roadgpt.chat import asks_a_model
 
     shelves = (("readers", reader), ("designers", designer))
     if any(asks_a_model(plugins.find(shelf, name.partition(":")[0])) for shelf, name in shelves if name):
+        from roadgpt.chat import configured
+
         return configured(told)
     if told:
         flag = next(each.flag for each in CHAT if each.field in told)
@@ -757,6 +762,16 @@ def pictures_of(values: dict[str, Any]) -> Any:
     """Returns the formats of the pictures to draw, none with --no-plot; removes both from ``values``."""
     given = values.pop("picture_formats")
     return () if values.pop("no_plot") else given
+
+
+def refuse_file(words: str, does: str, *command: str) -> None:
+    """Raises UsageError for the name of a road file in place of a description; a command ``does`` what is
+    meant."""
+    if len(words.split()) == 1 and words.lower().endswith(ENDINGS):
+        raise UsageError(
+            f"{words} is the name of a file, not a description; roadgpt import reads maps, and this {does} "
+            f"the road in a file: {command_line(*command, words)}"
+        )
 
 
 @contextmanager

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
-from roadgpt.cli.options import WORLD, choices_said, typed
+from roadgpt.cli.options import ENDINGS, WORLD, choices_said, typed
 from roadgpt.cli.screen import Row, Screen, unreadable
 from roadgpt.cli.streams import warn
-from roadgpt.errors import ExportError, PartError, UsageError, command_line, explained
+from roadgpt.errors import ExportError, PartError, UsageError, explained
 from roadgpt.plural import plural
 
 if TYPE_CHECKING:
@@ -32,7 +32,6 @@ WITHOUT_MAP = (".xodr", ".csv", ".tsv")  # endings of formats that know no map
 ROOM = 20.0  # m kept free around a road that is moved onto the map
 BORDER = 1.5  # m between a road and the border of its map, or a spline through its points may leave the map
 ROUND_MAP = 50.0  # m, to which the size of a map is rounded up
-ENDINGS = (".json", ".jsonl", ".xodr", ".csv", ".tsv", ".sbft")
 BESIDE_A_ROAD = (".drive.csv", ".route.json")  # endings of files that exporters write beside a road
 MOST_TOLD = 8  # names in a message
 
@@ -315,16 +314,6 @@ def run_of(named: NamedRoad, world: "World", geometry: "Geometry", quiet: bool =
     with named_in_errors(named.said):
         run = prove(blueprint, world=world, setup=Setup(geometry=geometry, drives=False))
     return replace(run, source=Path(named.said).name)
-
-
-def refuse_file(words: str, does: str, *command: str) -> None:
-    """Raises UsageError for the name of a road file in place of a description; a command ``does`` what is
-    meant."""
-    if len(words.split()) == 1 and words.lower().endswith(ENDINGS):
-        raise UsageError(
-            f"{words} is the name of a file, not a description; roadgpt import reads maps, and this {does} "
-            f"the road in a file: {command_line(*command, words)}"
-        )
 
 
 @contextmanager

@@ -13,9 +13,9 @@ from roadgpt import plugins
 from roadgpt.campaign.csv_tables import RESULTS
 from roadgpt.campaign.folder_record import open_record
 from roadgpt.campaign.gate import Gate
-from roadgpt.campaign.model import NumberedTest
+from roadgpt.campaign.model import NumberedTest, no_failure
 from roadgpt.campaign.selection import Selection, selection_of
-from roadgpt.campaign.status import CellStatus, Status, no_failure, status_of
+from roadgpt.campaign.status import CellStatus, Status, status_of
 from roadgpt.chat import Spent
 from roadgpt.chat.answer import plain
 from roadgpt.check.measures import ups_and_downs

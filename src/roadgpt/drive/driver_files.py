@@ -16,20 +16,12 @@ from importlib.util import source_from_cache
 from pathlib import Path
 from typing import Any
 
-from roadgpt.drive.loading import split_spec
+from roadgpt.drive.loading import folder_of, split_spec
 from roadgpt.errors import UsageError
 
-WRITTEN = "written by the driver"
-"""Stands for the content of a file that the driver also writes, so that it differs at any time."""
 COMPILED = tuple(EXTENSION_SUFFIXES)
 OPENING = {"open": 0, "import": 1, "ctypes.dlopen": 0, "os.rename": 1}
 """Python's audit events that concern a file, and the number of the argument that is its path."""
-
-
-def folder_of(spec: str) -> Path:
-    """Returns the folder of a driver's file, relative to which its files are named. A plug-in has none: it is
-    recorded with its package."""
-    return Path(split_spec(spec)[0]).resolve().parent
 
 
 class DriverFiles:

@@ -26,6 +26,8 @@ from roadgpt.errors import UsageError
 from roadgpt.provenance import CODE, USER
 
 RECORDINGS = (".csv", ".xosc")  # suffixes of files with recorded tracks
+WRITTEN = "written by the driver"
+"""Stands for the content of a file that the driver also writes, so that it differs at any time."""
 WITH_SETTINGS = re.compile(r"(.+\.py(?::\w+)?|[^:]+):(\w+=.*)", re.DOTALL)
 READERS: Mapping[str, Callable[[str], Any]] = {
     "bool": {"true": True, "false": False}.__getitem__,
@@ -58,6 +60,12 @@ def split_spec(spec: str) -> tuple[str, str]:
         return spec, ""
     path, _, wanted = spec.rpartition(":")
     return (path, wanted) if path.endswith(".py") else ("", "")
+
+
+def folder_of(spec: str) -> Path:
+    """Returns the folder of a driver's file, relative to which its files are named. A plug-in has none: it is
+    recorded with its package."""
+    return Path(split_spec(spec)[0]).resolve().parent
 
 
 def needs_permission(spec: str) -> bool:

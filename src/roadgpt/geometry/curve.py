@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+Point = tuple[float, float, float]
+"""x, y and z in metres."""
 LEAST_STRETCH = 0.2  # lower bound of the metres beside a curve per metre of it, on the inside of a bend
 Number = TypeVar("Number", float, Array)
 

@@ -42,7 +42,7 @@ from itertools import pairwise
 from roadgpt.brief.junctions import side_of
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
-from roadgpt.geometry.curve import wrapped
+from roadgpt.geometry.curve import Point, wrapped
 from roadgpt.language.names import Control, Side, Way
 from roadgpt.network.lane_along import added
 from roadgpt.network.network import (
@@ -57,7 +57,7 @@ from roadgpt.network.network import (
     RoadEnd,
     Roundabout,
 )
-from roadgpt.network.pose import STRAIGHT, NetworkPose, Point, curve_between, tangent_length
+from roadgpt.network.pose import STRAIGHT, NetworkPose, curve_between, tangent_length
 from roadgpt.network.stretch import road_of
 from roadgpt.road import Profile, Road, Segment
 from roadgpt.road.design import JunctionDesign, PlaceDesign, RampDesign

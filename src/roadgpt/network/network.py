@@ -11,28 +11,20 @@ import copy
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Literal, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast
 
 from pydantic import TypeAdapter
 
 from roadgpt.errors import UsageError
-from roadgpt.geometry.curve import Array
+from roadgpt.geometry.curve import Array, Point
 from roadgpt.language.names import Control, MapJunctionKind, PlainKind
-from roadgpt.network.paved import (
-    ISLAND,
-    SLIVER,
-    Area,
-    areas_of,
-    covered_by,
-    outline_of,
-    paved_by,
-    without_small_islands,
-)
-from roadgpt.network.pose import Point
 from roadgpt.reading import strictly
 from roadgpt.road import Profile, Road
 from roadgpt.road.design import mirrored_point
 from roadgpt.road.profile import width_at
+
+if TYPE_CHECKING:
+    from roadgpt.network.paved import Area
 
 Contact = Literal["start", "end"]
 OTHER_CONTACT: dict[Contact, Contact] = {"start": "end", "end": "start"}
@@ -326,19 +318,21 @@ class Network:
         return tuple(found)
 
     @property
-    def paved(self) -> Area:
+    def paved(self) -> "Area":
         """The area of all driving lanes, seen from above, without shoulders; small holes are filled."""
         return self._paved[0]
 
     @property
-    def paved_nodes(self) -> tuple[Area, ...]:
+    def paved_nodes(self) -> "tuple[Area, ...]":
         """The paved area inside each of the ``nodes``, in their order."""
         return self._paved[1:]
 
     @cached_property
-    def _paved(self) -> tuple[Area, ...]:
+    def _paved(self) -> "tuple[Area, ...]":
         """The paved area of all roads, and the area inside each of the ``nodes``. Holes below ``ISLAND`` are
         paved, at roundabouts those below ``SLIVER``."""
+        from roadgpt.network.paved import ISLAND, SLIVER, areas_of, covered_by, without_small_islands
+
         areas = dict(zip(self._by_id, areas_of([each.road for each in self._by_id.values()]), strict=True))
         inside = [[each.id for each in self.inside(junctions)] for _, junctions in self.nodes]
         nodes = [covered_by([areas.pop(number) for number in numbers]) for numbers in inside]
@@ -362,6 +356,8 @@ class Network:
 
     def outline(self, junction: int) -> Array:
         """Returns the outline ``(n, 2)`` in metres of the paved area inside a junction, counter-clockwise."""
+        from roadgpt.network.paved import outline_of, paved_by
+
         inside = [self.road(each.road).road for each in self.junction(junction).connections]
         return outline_of(paved_by(inside))
 

@@ -12,10 +12,9 @@ from typing import NamedTuple
 import scipy
 
 from roadgpt.geometry import Piece
+from roadgpt.geometry.curve import Point
 from roadgpt.geometry.pieces import joined
 
-Point = tuple[float, float, float]
-"""x, y and z in metres."""
 SHARE = 0.3  # share of the angle of a turn that belongs to the two clothoids; the rest belongs to the arc
 STRAIGHT = 1e-9  # rad; a way with a smaller turn is a straight line
 

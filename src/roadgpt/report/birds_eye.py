@@ -50,7 +50,6 @@ from roadgpt.report.plan_view import (
     plan_points,
     show_from_above,
 )
-from roadgpt.report.relief import draw_land
 from roadgpt.road import Road, World
 from roadgpt.run import Run
 from roadgpt.verdict import SEVERITIES, Incident, Severity, Verdict, percent, severity
@@ -178,6 +177,8 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
     axes.add_patch(Rectangle((0, 0), size, size, fc=GROUND, ec="none", zorder=0))
     axes.add_patch(Rectangle((0, 0), size, size, fc="none", ec=SOFT, lw=1.4, ls=(0, (6, 3)), zorder=0.6))
     if world.has_ground:
+        from roadgpt.report.relief import draw_land
+
         draw_land(axes, world.lay(road), world, frame)
     draw_road(axes, road, world, per_inch)
     draw_ends(axes, road, world)

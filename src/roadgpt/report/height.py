@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from roadgpt.brief.junctions import NAMES
 from roadgpt.geometry.curve import Array
-from roadgpt.network.sight import sight_along
 from roadgpt.report.birds_eye import STEP, Scale, name_places, places_of
 from roadgpt.report.canvas import (
     BLUE,
@@ -30,7 +29,6 @@ from roadgpt.report.canvas import (
     note,
 )
 from roadgpt.report.plan_view import stations_of
-from roadgpt.report.relief import draw_land_along
 from roadgpt.road import Road
 from roadgpt.run import Run
 
@@ -156,6 +154,8 @@ def _speed(axes: Axes, run: Run, s: Array) -> None:
 def _sight(axes: Axes, run: Run, s: Array) -> None:
     """How far the driver sees along the road, and how far a car goes until it stands (AASHTO Green Book,
     3.2.2: after 2.5 s, at 3.4 m/s^2), from the speed of the drive, or else the speed limit."""
+    from roadgpt.network.sight import sight_along
+
     assert run.road is not None
     stations, sight = sight_along(run.road, run.world)
     speed = np.full_like(stations, run.world.limits.speed_limit)
@@ -250,6 +250,8 @@ def height_profile(run: Run, scale: Scale = "equal") -> Figure:
     shade_junctions(axes, run.road)
     draw_heights(axes, s, z, label)
     if run.world.has_ground and scale != "thesis":
+        from roadgpt.report.relief import draw_land_along
+
         draw_land_along(axes, run.world.lay(run.road), run.world, s, z)
     low, high = axes.get_ylim()
     for place in places:

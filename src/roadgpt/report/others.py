@@ -1,7 +1,7 @@
 """Draws the others on the road from above: their boxes at one moment, how they came there, and a contact."""
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,10 +17,11 @@ from roadgpt.language.table import ROAD_USERS, VEHICLES
 from roadgpt.report.canvas import BLUE, GREEN, HALO, INK, POINTS, SOFT, VERMILLION, inches_of
 from roadgpt.report.plan_view import Frame, draw_road
 from roadgpt.run import Run
-from roadgpt.traffic import Tracks
-from roadgpt.traffic.actor import HEADING, SPEED, STILL, X, Y
 from roadgpt.verdict import Incident
 from roadgpt.verdict.verdict import IncidentKind
+
+if TYPE_CHECKING:
+    from roadgpt.traffic import Tracks
 
 NAVY, BROWN, PINK = "#1f3763", "#7a4b16", "#c2408f"
 COLOURS = {
@@ -83,6 +84,8 @@ def draw_others(axes: Axes, run: Run, per_inch: float, time: float) -> None:
         return
     least = SMALLEST / POINTS * per_inch
     before = np.arange(max(time - TRAIL, 0.0), time + STEP / 2, STEP)
+    from roadgpt.traffic.actor import HEADING, X, Y
+
     ways = others.at(before)[..., [X, Y]]
     for number, (way, state, actor) in enumerate(
         zip(ways.swapaxes(0, 1), others.at(time), others.actors, strict=True)
@@ -111,8 +114,10 @@ def draw_others(axes: Axes, run: Run, per_inch: float, time: float) -> None:
         axes.plot(*contact.contact.xy, **STAR)
 
 
-def _brakes(others: Tracks, number: int, time: float) -> bool:
+def _brakes(others: "Tracks", number: int, time: float) -> bool:
     """Whether a vehicle slows down at a time, or stands and once moved."""
+    from roadgpt.traffic.actor import SPEED, STILL
+
     if others.actors[number].kind not in VEHICLES:
         return False
     speeds = np.abs(others.at(time + np.array([-AROUND, 0.0, AROUND]))[:, number, SPEED])
@@ -143,6 +148,8 @@ def key_of(run: Run) -> list[tuple[str, float, dict[str, Any]]]:
 def draw_contact(axes: Axes, run: Run, contact: Incident) -> None:
     """Draws the tested car and the one that it touched first, enlarged, at the moment of contact, on axes
     that are wider than high, with arrows for their speeds."""
+    from roadgpt.traffic.actor import HEADING, X, Y
+
     assert run.drive is not None
     assert run.drive.others is not None
     assert run.road is not None

@@ -4,7 +4,7 @@ labels so that they cover neither the road nor each other."""
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from itertools import islice
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,14 +17,14 @@ from numpy.typing import NDArray
 
 from roadgpt.geometry.curve import Array
 from roadgpt.language.names import Control
-from roadgpt.network import Network, network_of, only_road
-from roadgpt.network.markings import JunctionSign, arrows, between_crosswalks, signs, strokes
-from roadgpt.network.paved import Area
-from roadgpt.network.paved import stations_of as stations_on
-from roadgpt.network.route import area_with_verges
-from roadgpt.network.surface import NetworkSurface
+from roadgpt.network import network_of, only_road
 from roadgpt.report.canvas import GRASS, HALO, INK, POINTS, SOFT, inches
 from roadgpt.road import Edges, Road, World
+
+if TYPE_CHECKING:
+    from roadgpt.network import Network
+    from roadgpt.network.markings import JunctionSign
+    from roadgpt.network.paved import Area
 
 TINT, ARROW = "#8fb3d6", "#0072b2"
 KERB = "#e9e6dc"
@@ -43,9 +43,14 @@ ARROW_INCHES = 0.5  # least distance between arrows
 ROUTE_STEP = 0.5  # m between the points of the edges of the route
 
 
-def draw_network(axes: Axes, route: Road, network: Network, per_inch: float) -> None:
+def draw_network(axes: Axes, route: Road, network: "Network", per_inch: float) -> None:
     """Draws a network and the lane of the route; a map without a route has no such lane. ``per_inch`` is the
     number of metres per inch of the picture."""
+    from roadgpt.network.markings import arrows, between_crosswalks, strokes
+    from roadgpt.network.paved import stations_of as stations_on
+    from roadgpt.network.route import area_with_verges
+    from roadgpt.network.surface import NetworkSurface
+
     surface = NetworkSurface.of(network)
     if surface.shoulder > 0:
         _fill(axes, area_with_verges(network), VERGE, 1)
@@ -79,7 +84,7 @@ def draw_network(axes: Axes, route: Road, network: Network, per_inch: float) -> 
         axes.plot(*sign.place[:2], **sign_style(sign.control), zorder=4)
 
 
-def draw_network_from_far(axes: Axes, route: Road, network: Network, points: float) -> None:
+def draw_network_from_far(axes: Axes, route: Road, network: "Network", points: float) -> None:
     """Draws the roads of a network as lines that are ``points`` wide, and the route as a darker line."""
     lines = [_middle_of(each.road, each.profile.edges) for each in network.roads]
     axes.add_collection(LineCollection(lines, colors=FAR_ROADS, linewidths=points, zorder=2))
@@ -94,11 +99,11 @@ def _middle_of(road: Road, between: Callable[[Array], Edges]) -> Array:
     return np.asarray(road.at(s, np.mean(between(s), axis=0))[:, :2])
 
 
-def _fill(axes: Axes, area: Area, colour: str, layer: float) -> None:
+def _fill(axes: Axes, area: "Area", colour: str, layer: float) -> None:
     axes.add_patch(PathPatch(path_of(area), fc=colour, ec="none", zorder=layer))
 
 
-def rings_of(area: Area) -> list[Array]:
+def rings_of(area: "Area") -> list[Array]:
     """Returns the outlines of an area and of the holes in it, each ``(n, 2)`` and closed."""
     import shapely
 
@@ -107,7 +112,7 @@ def rings_of(area: Area) -> list[Array]:
     return [np.asarray(ring.coords, float)[:, :2] for ring in rings]
 
 
-def path_of(area: Area) -> Outline:
+def path_of(area: "Area") -> Outline:
     """Returns an area as a matplotlib path; the holes in the area stay empty."""
     import shapely
 
@@ -136,8 +141,10 @@ def _draw_route(axes: Axes, route: Road, per_inch: float) -> None:
         )
 
 
-def signs_shown(network: Network, per_inch: float) -> tuple[JunctionSign, ...]:
+def signs_shown(network: "Network", per_inch: float) -> "tuple[JunctionSign, ...]":
     """Returns the signs and lights to draw in a picture: none with more than 50 metres per inch."""
+    from roadgpt.network.markings import signs
+
     return signs(network) if per_inch <= NEAR else ()
 
 

@@ -4,9 +4,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from roadgpt.campaign.folder_record import is_store, open_record
-from roadgpt.campaign.model import NumberedTest
+from roadgpt.campaign.model import NumberedTest, no_failure
 from roadgpt.campaign.record import Record
-from roadgpt.campaign.status import Status, no_failure, status_of
+from roadgpt.campaign.status import Status, status_of
 from roadgpt.errors import UsageError
 from roadgpt.plural import plural
 from roadgpt.report.chapters import with_chapters

@@ -9,7 +9,6 @@ import numpy as np
 from pydantic import SerializerFunctionWrapHandler, model_serializer
 
 from roadgpt.brief.model import Brief, Frozen
-from roadgpt.brief.scenarios import scenario
 from roadgpt.chat import ChatSettings, Spent
 from roadgpt.check import Finding
 from roadgpt.design import DesignReport
@@ -48,6 +47,8 @@ class Setup(Parts):
         with the scenario's criterion, if none was given to this World."""
         if not self.scenario:
             return world
+        from roadgpt.brief.scenarios import scenario
+
         one, given = scenario(self.scenario), world.limits.avoidable
         return world.changed(scene=one.onto(world.scene, left_hand), avoidable=given or one.avoidable)
 

@@ -22,9 +22,8 @@ from pathlib import Path
 from typing import Any
 
 from roadgpt import __version__, brief, plugins
-from roadgpt.drive.driver_files import WRITTEN, folder_of
 from roadgpt.drive.isolation import driver_of
-from roadgpt.drive.loading import without_settings
+from roadgpt.drive.loading import WRITTEN, folder_of, without_settings
 from roadgpt.errors import UsageError
 from roadgpt.reading import ABSENT, digest
 from roadgpt.run.model import Request, Setup

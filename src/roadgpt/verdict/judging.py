@@ -9,8 +9,6 @@ import numpy as np
 from roadgpt.drive.drive_monitor import STUCK_AMONG_OTHERS, STUCK_TIME
 from roadgpt.language.table import VEHICLES
 from roadgpt.road.world import share_in_words
-from roadgpt.traffic.actor import SPEED
-from roadgpt.traffic.traffic import LATE
 from roadgpt.verdict.criteria import FREE, NAMED, SUCCESS, Criterion, Judged, first_failure, incidents_of
 from roadgpt.verdict.oracle import EPSILON, consult, has_departed, margins
 from roadgpt.verdict.verdict import (
@@ -100,7 +98,9 @@ def judge(
 
         outcome, why = told(case.road, drive, world)
         description = f"{description}; {why}" if outcome == "PASS" else f"{why}; {description}"
-    else:
+    elif drive.missed:
+        from roadgpt.traffic.traffic import LATE
+
         description += "".join(f"; {each}" for each in drive.missed if not each.endswith(LATE))
     s, x, y, time = (float(drive[name][step]) for name in ("s", "x", "y", "time"))
     if cause == "collision" and contact is not None:
@@ -216,6 +216,8 @@ def _behind(case: Judged) -> str:
     who = int(np.argmin(gaps))
     if gaps[who] > FREE:
         return ""
+    from roadgpt.traffic.actor import SPEED
+
     speed = abs(float(others.states[-1, who, SPEED]))
     does = f"drives at {speed * 3.6:.0f} km/h" if speed > STANDS else "stands"
     return f"{gaps[who]:.1f} m behind {others.actors[who].name}, which {does} in its way"

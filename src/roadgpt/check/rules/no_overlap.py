@@ -18,7 +18,6 @@ from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding, owner_of, road_finding, single_road, station_on
 from roadgpt.check.ribbon import bulge, is_convex, near_pairs, quads_of, sides
 from roadgpt.network import Network, NetworkRoad
-from roadgpt.network.landscape import CLEARANCE
 from roadgpt.road import Road, World
 
 SURELY = 0.9  # of the tightest radius: between the samples, a bend may be a little tighter
@@ -59,6 +58,8 @@ def overlap_with_itself(
     shapes, nearest = shapely.polygons(quads), (np.inf, 0)
     for i, j in near_pairs(quads, reach=max(slack, reach), apart=max(2, int(min(half_turn, len(quads))))):
         if world.has_ground:
+            from roadgpt.network.landscape import CLEARANCE
+
             is_level = np.abs(samples.z[i] - samples.z[j]) < CLEARANCE
             i, j = i[is_level], j[is_level]
         gap = shapely.distance(shapes[i], shapes[j])
@@ -74,6 +75,8 @@ def overlap_with_itself(
 
 def _is_above(one: NetworkRoad, other: NetworkRoad) -> bool:
     """Returns whether one of two roads is CLEARANCE above the other wherever they come near each other."""
+    from roadgpt.network.landscape import CLEARANCE
+
     points = one.road.centreline(1.0)
     s, t = other.road.locate(*points[:, :2].T)
     near = np.abs(t) < one.profile.reach + other.profile.reach

@@ -4,14 +4,18 @@ are higher than 15 m, without a part whose verge lies over another part, and wit
 A wall stands where two parts of the roads have no room for slopes between them. Without land, or on flat land
 that nobody asked for, nothing is checked."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from roadgpt.brief.amount import span
 from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding
-from roadgpt.ground.ground import Ground
 from roadgpt.network import Network
 from roadgpt.road import Road, World
+
+if TYPE_CHECKING:
+    from roadgpt.ground.ground import Ground
 
 HIGHEST = 15.0  # m, of a wall; higher ones are dams (ICOLD counts from 15 m on)
 STEP = 0.3  # m between verges that lie over each other, at most
@@ -59,7 +63,7 @@ def inspect(network: Network, route: Road | None, brief: Brief | None, world: Wo
     return tuple(found)
 
 
-def _above_another(network: Network, ground: Ground) -> list[Finding]:
+def _above_another(network: Network, ground: "Ground") -> list[Finding]:
     """Reports where the verge of one part of the roads lies farthest above or below another part."""
     worst, place = STEP, None
     for member in network.roads_outside:

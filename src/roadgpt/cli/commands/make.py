@@ -12,8 +12,17 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from roadgpt.cli import options
-from roadgpt.cli.options import HOW_MANY, Argument, GroupedCommand, Heading, Option, folder, named, whole
-from roadgpt.cli.roads import UNREADABLE, each_road, made, refuse_file, roads_in
+from roadgpt.cli.options import (
+    HOW_MANY,
+    Argument,
+    GroupedCommand,
+    Heading,
+    Option,
+    folder,
+    named,
+    refuse_file,
+    whole,
+)
 from roadgpt.cli.screen import Row, Screen, row_of
 from roadgpt.cli.streams import aligned, crashes_go_to, warn
 from roadgpt.errors import GivenUpError, UsageError
@@ -179,17 +188,19 @@ def reading(brief: "Brief") -> str:
 
 
 def _watch(work: "Campaign", pictures: "tuple[Format, ...]", screen: Screen, junit: Path | None) -> None:
-    from roadgpt.campaign.status import no_failure
-    from roadgpt.cli.junit import suite_of, write_junit
-    from roadgpt.cli.repeat_commands import to_resume
+    from roadgpt.campaign.model import no_failure
 
     try:
         screen.runs(work.all_runs(), work.folder)
     except (KeyboardInterrupt, GivenUpError):
+        from roadgpt.cli.repeat_commands import to_resume
+
         warn(f"continue with: {to_resume(work.folder)}")
         raise
     finally:
         if junit is not None:
+            from roadgpt.cli.junit import suite_of, write_junit
+
             write_junit(junit, [suite_of(work.request, sorted(screen.rows, key=lambda row: row.name))])
         screen.close()
         screen.spent(work.meter.spent)
@@ -364,6 +375,7 @@ def drive(
         drive_again(files, choice, out, drivers, axes, pictures, gate)
         return 0
     from roadgpt.cli.junit import suite_of, write_junit
+    from roadgpt.cli.roads import UNREADABLE, each_road, made, roads_in
     from roadgpt.run import Request, Setup, check_parts, prove, write_run
     from roadgpt.run.folder import reject_used
     from roadgpt.run.model import MOST, given_up
@@ -416,6 +428,7 @@ def drive_again(
     from roadgpt.campaign.folder_record import is_same, run_again, setups_of
     from roadgpt.campaign.model import NumberedTest
     from roadgpt.chat.answer import plain
+    from roadgpt.cli.roads import made
     from roadgpt.drive.loading import check_named_drivers
     from roadgpt.run import write_run
     from roadgpt.run.atomic import refuse_links

@@ -14,8 +14,18 @@ from roadgpt import plugins
 from roadgpt.cli import options
 from roadgpt.cli.commands.evaluate import write_report
 from roadgpt.cli.commands.make import beside, understood
-from roadgpt.cli.options import PATH, Argument, GroupedCommand, Heading, Option, measure, named, whole
-from roadgpt.cli.roads import MOST_TOLD, named_in_errors, refuse_file, roads_in, source_of
+from roadgpt.cli.options import (
+    PATH,
+    Argument,
+    GroupedCommand,
+    Heading,
+    Option,
+    measure,
+    named,
+    refuse_file,
+    whole,
+)
+from roadgpt.cli.roads import MOST_TOLD, named_in_errors, roads_in, source_of
 from roadgpt.cli.streams import warn
 from roadgpt.errors import PartError, UsageError, command_line
 from roadgpt.plural import plural

@@ -10,7 +10,6 @@ import numpy as np
 
 from roadgpt.brief.visibility import visual_range
 from roadgpt.drive.drivers.reference import Reference
-from roadgpt.drive.drivers.robot import Robot
 from roadgpt.drive.driving_line import lane_limits, line_along, pedals_for, stations
 from roadgpt.drive.keeping_distance import HARDEST, ROLLS, KeepingDistance, slowed
 from roadgpt.drive.view import Command, View
@@ -114,7 +113,11 @@ class LaneCentring:
             for way in road.passages
         )
         self._next, self._is_person = Reference(), False
-        self._person = Robot() if self._is_robot else self._next
+        self._person = self._next
+        if self._is_robot:
+            from roadgpt.drive.drivers.robot import Robot
+
+            self._person = Robot()
         self.handed_to: str | None = None
         if self._by_person:
             for each in {self._person, self._next}:

@@ -11,10 +11,9 @@ from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 
-from roadgpt.drive.driver_files import WRITTEN, folder_of
 from roadgpt.drive.driver_guard import BEFORE_START, ONE_ANSWER, RemoteDriverError
 from roadgpt.drive.isolation.process import Child, GoneError
-from roadgpt.drive.loading import absolute_spec
+from roadgpt.drive.loading import WRITTEN, absolute_spec, folder_of
 from roadgpt.drive.view import CameraSpec, Command, View
 from roadgpt.errors import DriverError, RoadGPTError, UsageError
 from roadgpt.reading import digest

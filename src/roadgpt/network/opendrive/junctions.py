@@ -17,7 +17,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from roadgpt.errors import UsageError
-from roadgpt.geometry.curve import wrapped
+from roadgpt.geometry.curve import Point, wrapped
 from roadgpt.language.names import Control
 from roadgpt.network.markings import CROSSWALK, STOP_LINE, line_before
 from roadgpt.network.network import (
@@ -36,7 +36,6 @@ from roadgpt.network.network import (
 )
 from roadgpt.network.opendrive.roads import UNLINKED, FileRoad, OneWay, RoadBuilder
 from roadgpt.network.opendrive.tree import MapRemarks, number
-from roadgpt.network.pose import Point
 
 PARALLEL = 30.0  # degrees; arms that are closer together belong to a merge or an exit
 BEFORE = 60.0  # m before a junction, within which a sign or a light applies to it
