@@ -4,6 +4,7 @@ import ast
 import re
 import subprocess
 import sys
+from collections import Counter
 from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
@@ -201,6 +202,13 @@ def test_files_are_finished_and_well_named(room: str) -> None:
         assert not re.search(r"\beval\(|\bexec\(|except:", text), path
         names = {*path.relative_to(SOURCE).with_suffix("").parts}
         assert not {"utils", "util", "common", "helpers", "misc"} & names, path
+
+
+def test_a_name_of_a_class_means_one_thing() -> None:
+    files = sorted(SOURCE.parent.rglob("*.py"))
+    where = [(part.name, path) for path in files for part in parts_of(path) if isinstance(part, ast.ClassDef)]
+    twice = {name for name, count in Counter(name for name, _ in where).items() if count > 1}
+    assert not [(name, str(path)) for name, path in where if name in twice]
 
 
 def test_nothing_in_roadgpt_names_an_annex() -> None:
