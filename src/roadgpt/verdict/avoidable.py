@@ -60,7 +60,7 @@ FRONTS = np.array(
 """R157, 5.2.3.3: speeds in m/s and the least time gaps in s; the least distance is 2 m."""
 
 
-CRITERIA: "Mapping[Avoider, tuple[str, tuple[DriverModel, ...]]]" = {
+AVOIDERS: "Mapping[Avoider, tuple[str, tuple[DriverModel, ...]]]" = {
     "r157": ("the careful driver of UN R157", DRIVERS[:1]),
     "reg157": ("Reg157", DRIVERS[1:2]),
     "fsm": ("FSM", DRIVERS[2:3]),
@@ -76,7 +76,7 @@ class Avoidance(NamedTuple):
     by: tuple[str, ...]
     """Those of the four drivers that avoid it."""
     criterion: "Avoider"
-    """By which of CRITERIA it is judged whether it was avoidable."""
+    """By which of AVOIDERS it is judged whether it was avoidable."""
     is_avoidable: bool
     """Whether it was, by this criterion."""
     is_own_doing: bool
@@ -90,7 +90,7 @@ def avoidance_of(road: "Road", drive: "Drive", world: "World", collision: Incide
     courses = {driver.said: _course(driver, meeting) for driver in DRIVERS}
     by = tuple(said for said, how in courses.items() if how != COLLIDES)
     criterion = world.limits.avoidable or ("r157" if _is_of_r157(meeting) else "any")
-    whose, whom = CRITERIA[criterion]
+    whose, whom = AVOIDERS[criterion]
     is_avoidable = any(driver.said in by for driver in whom)
     each = ", ".join(f"{said} {how}" for said, how in courses.items())
     said = f"{'' if is_avoidable else 'not '}avoidable by {whose}: {each}"
