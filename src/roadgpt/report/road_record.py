@@ -143,7 +143,7 @@ def group_of(
 ) -> RoadGroup:  # fmt: skip
     """Returns the roads of the first ``most`` tests of a cell, of which the first are ``compared``. ``home``
     is the way from the report's folder to that of the record; ``more`` are further fields of the group."""
-    names = [*(f"overview.{kind}" for kind in FORMATS), "generation_stats.csv", "results.csv"]
+    names = [*(f"overview.{kind}" for kind in FORMATS), "results.csv"]
     drawn = next((name for name in names if (record.folder / name).is_file()), "")
     results = record.results(cell.name, "tests.number <= ?", (most,))
     roads = tuple(_road_of(record, cell, each, truth, home, each.number <= compared) for each in results)

@@ -29,7 +29,7 @@ from roadgpt.report.road_record import file_of, named
 from roadgpt.report.statistics import chi_squared
 
 MOST_CELLS = 12  # whose curves and shares are drawn
-TABLES = ("results.csv", "cells.csv", "generation_stats.csv")
+TABLES = ("results.csv", "cells.csv")
 NAMED = 30  # tests that are shown one by one
 STEPS = 200  # of a curve
 MARGINS = (-2.0, 2.0, 0.1)  # m: from, to, width of a bar; what lies beyond is in the outermost
