@@ -11,9 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from roadgpt import __version__
-from roadgpt.check.ribbon import quads_of
-from roadgpt.children import private_streams
+from roadgpt import __version__, children
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.geometry import interpolate
 from roadgpt_sbft.client import Message, received, send
@@ -50,10 +48,10 @@ def nodes(points: Any) -> Points:
 
 def left_lane(points: Any, records: Any, before: float, after: float) -> Message | None:
     """Returns the fields of the Departure; None if the car did not leave its lane."""
-    from roadgpt.run.execution import ExecutionRecord
+    from roadgpt.run import execution
     from roadgpt_sbft.sparseness import departure
 
-    found = departure(points, [ExecutionRecord(*record) for record in records], before, after)
+    found = departure(points, [execution.ExecutionRecord(*record) for record in records], before, after)
     return None if found is None else found._asdict()
 
 
@@ -104,16 +102,17 @@ def tell(
 
 def distance(one: Any, other: Any) -> float:
     """Returns the competition's edit distance between two sequences of points ``(n, 2)``."""
-    from roadgpt.run.step_distance import distances, steps_of
+    from roadgpt.run import step_distance
 
-    return float(distances(steps_of(one), [steps_of(other)])[0])
+    one, other = map(step_distance.steps_of, (one, other))
+    return float(step_distance.distances(one, [other])[0])
 
 
 OPS: dict[Any, Callable[..., Any]] = {
     "hello": lambda: __version__,
     "nodes": nodes,
     "verdict": lambda points, map_size: sbft_verdict(np.asarray(points, float), map_size),
-    "clear": lambda left, right: keeps_clear(quads_of(np.asarray(left, float), np.asarray(right, float))),
+    "clear": lambda left, right: keeps_clear(np.asarray(left, float), np.asarray(right, float)),
     "distance": distance,
     "left_lane": left_lane,
     "spread": spread,
@@ -130,7 +129,7 @@ def main() -> None:
         sys.path.insert(0, sys.argv[1])
         import_module("roadgpt_inside").Answering.here = answer
         import_module("roadgpt_task").main()
-    hears, tells = private_streams()
+    hears, tells = children.private_streams()
     for line in hears:
         asked = received(line)
         if asked is not None:

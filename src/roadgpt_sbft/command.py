@@ -5,75 +5,72 @@ competition.
 import logging
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from roadgpt.cli import options
-from roadgpt.cli.options import CommandGroup, GroupedCommand, Heading, Option, measure, named, whole
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import crashes_go_to
 from roadgpt.errors import UsageError, explained, to_install
 
-if TYPE_CHECKING:
-    from roadgpt.report import Scale
-
 FAILED = 1  # exit status: the generator crashed, hung or left; its results are complete
 KMH = 3.6
 CLIENT = "roadgpt_client.py"
+option, measure, whole, DRIVE = options.Option, options.measure, options.whole, options.Heading.DRIVE
 
 
 def _write_client(ctx: click.Context, param: click.Parameter, path: Path | None) -> None:
     del param
     if path is None:
         return
-    from roadgpt.run.atomic import write_whole
+    from roadgpt.run import atomic
     from roadgpt_sbft.generator_process import NAMES
 
     if path.exists():
         raise UsageError(f"{path} is there already; give another name")
     with explained(UsageError, f"cannot write {path}", "give another name"):
-        write_whole(path, (NAMES / CLIENT).read_text(encoding="utf-8"))
+        atomic.write_whole(path, (NAMES / CLIENT).read_text(encoding="utf-8"))
     click.echo(f"{path}; before it is used, set ROADGPT_PYTHON to {sys.executable}")
     ctx.exit()
 
 
-SBFT_OPTIONS: list[Option] = [
-    Option("--module-name", "Python module of the generator.", required=True),
-    Option("--class-name", "Class of the generator.", required=True),
-    Option("--module-path", "Additional folder in which Python looks for the module.",
+SBFT_OPTIONS: list[options.Option] = [
+    option("--module-name", "Python module of the generator.", required=True),
+    option("--class-name", "Class of the generator.", required=True),
+    option("--module-path", "Additional folder in which Python looks for the module.",
            click.Path(exists=True, file_okay=False)),
-    Option("--python", "Interpreter for the generator, with its own libraries; Python 3.8 or later. "
+    option("--python", "Interpreter for the generator, with its own libraries; Python 3.8 or later. "
            "[default: RoadGPT's]"),
-    Option("--time-budget", "Budget in seconds, for generating and driving.",
+    option("--time-budget", "Budget in seconds, for generating and driving.",
            measure(0, 10_000_000, "s", above=True)),
-    Option("--test-budget", "Budget in tests, including invalid ones.", whole(1, 10**7, "tests")),
-    Option("--map-size", "Side of the square map, m.", whole(100, 1000, "metres"), 200),
+    option("--test-budget", "Budget in tests, including invalid ones.", whole(1, 10**7, "tests")),
+    option("--map-size", "Side of the square map, m.", whole(100, 1000, "metres"), 200),
     # the competition's own defaults and bounds, which no configuration file changes
-    Option("--oob-tolerance", "Share of the car that may be outside its lane.", measure(0, 1, above=True),
-           0.95, heading=Heading.DRIVE),
-    Option("--speed-limit", "Speed limit, km/h.", measure(10, 300, "km/h"), 70, heading=Heading.DRIVE),
-    named(options.SETUP, "driver")[0].but(default="beamng_like"),
-    *named(options.SETUP, "simulator"),
+    option("--oob-tolerance", "Share of the car that may be outside its lane.", measure(0, 1, above=True),
+           0.95, heading=DRIVE),
+    option("--speed-limit", "Speed limit, km/h.", measure(10, 300, "km/h"), 70, heading=DRIVE),
+    options.named(options.SETUP, "driver")[0].but(default="beamng_like"),
+    *options.named(options.SETUP, "simulator"),
     options.seed("Seed for the driver.", 0),
-    Option("--patience", "Seconds that the generator may take for one test.",
+    option("--patience", "Seconds that the generator may take for one test.",
            measure(0, 86_400, "s", above=True), 600),
     options.out("An empty folder, or a new one. [default: results/MODULE_CLASS_STAMP]"),
-    Option("--plot has_pictures", "Draw every test, and not only the overview.", bool),
-    Option("--no-plot", "Draw nothing.", bool),
+    option("--plot has_pictures", "Draw every test, and not only the overview.", bool),
+    option("--no-plot", "Draw nothing.", bool),
     *(options.AXES, options.FORMAT),
-    Option("--debug", "Log more details of what the generator does.", bool),
-    Option("--client", "Write the Python module that lets the competition run RoadGPT, and exit.",
+    option("--debug", "Log more details of what the generator does.", bool),
+    option("--client", "Write the Python module that lets the competition run RoadGPT, and exit.",
            click.Path(dir_okay=False, path_type=Path), is_eager=True, expose_value=False,
            callback=_write_client),
     *options.SCREEN,
 ]  # fmt: skip
 
 
-@click.command("sbft", cls=GroupedCommand, has_simulators=True, params=SBFT_OPTIONS)
+@click.command("sbft", cls=options.GroupedCommand, has_simulators=True, params=SBFT_OPTIONS)
 def sbft_command(
     map_size: int, oob_tolerance: float, speed_limit: float, driver: str, simulator: str, seed: int,
-    out: Path | None, has_pictures: bool, no_plot: bool, axes: "Scale", picture_formats: Any,
+    out: Path | None, has_pictures: bool, no_plot: bool, axes: Any, picture_formats: Any,
     as_json: bool, quiet: bool, verbose: bool, **experiment: Any,
 ) -> int:  # fmt: skip
     """Run a test generator of the SBFT tool competition.
@@ -87,14 +84,11 @@ def sbft_command(
     roadgpt compete sbft --module-name src.gen --class-name Gen --module-path ~/gen --time-budget 3600
     roadgpt compete sbft --module-name old --class-name Old --python ~/old/venv/bin/python --test-budget 100
     """
-    from roadgpt.road import Limits, Site, World
+    from roadgpt.road import World
     from roadgpt.run import Setup
     from roadgpt_sbft import Experiment, compete
 
-    world = World(
-        site=Site(map_size=map_size),
-        limits=Limits(oob_tolerance=oob_tolerance, speed_limit=speed_limit / KMH),
-    )
+    world = World().changed(map_size=map_size, oob_tolerance=oob_tolerance, speed_limit=speed_limit / KMH)
     setup = Setup(driver=driver, simulator=simulator, rules="sbft")
     draw = options.drawing_of(picture_formats if has_pictures and not no_plot else (), axes)
     work = compete(Experiment(**experiment), world, setup, seed, out, draw)
@@ -119,8 +113,8 @@ def sbft_command(
 
 
 OPTIONS = (
-    Option("--port", "Port of the service; 0: a free one.", whole(0, 65_535, "a port"), 4545),
-    Option(
+    option("--port", "Port of the service; 0: a free one.", whole(0, 65_535, "a port"), 4545),
+    option(
         "--host",
         "Who can connect: 127.0.0.1 (this machine only) or 0.0.0.0 (any machine, needed in a container).",
         str,
@@ -130,7 +124,7 @@ OPTIONS = (
 )
 
 
-@click.command("sdc", cls=GroupedCommand, params=[*OPTIONS])
+@click.command("sdc", cls=options.GroupedCommand, params=[*OPTIONS])
 def sdc_command(port: int, host: str, quiet: bool) -> None:
     """Start a gRPC server that selects and ranks tests by how likely the car is to leave its lane.
 
@@ -157,7 +151,7 @@ def sdc_command(port: int, host: str, quiet: bool) -> None:
 
 
 @click.group(
-    cls=CommandGroup, heading="Exchange",
+    cls=options.CommandGroup, heading="Exchange",
     short_help="Run SBFT test generators, or the server of the SDC competition.",
 )  # fmt: skip
 def command() -> None:

@@ -13,16 +13,16 @@ import numpy as np
 from roadgpt.brief.model import Frozen
 from roadgpt.check import Finding
 from roadgpt.errors import PartError, RoadGPTError, UsageError
-from roadgpt.road import ORACLES, Limits, Road, Site, World
+from roadgpt.road import Road, World
 from roadgpt.run import Draw, Request, Run, Seconds, Setup, check_parts, prove
 from roadgpt.run.model import MOST, given_up
 from roadgpt.stopping import look
 from roadgpt_sbft.client import Message
 from roadgpt_sbft.generator_process import GeneratorExitedError, GeneratorProcess
 from roadgpt_sbft.results import LOG, Experiment, Results, new_folder
-from roadgpt_sbft.validator import TOO_FEW, sbft_verdict
+from roadgpt_sbft.validator import TOO_FEW
 
-USUAL = World(site=Site(map_size=200.0), limits=Limits(**ORACLES["thesis"]))
+USUAL = World().changed(map_size=200.0, oracle="thesis")
 GROUND = 0.0  # m: the competition's roads are level, and points without heights are at this height
 PLAIN = Setup(rules="sbft", driver="beamng_like")
 WARM = [[60.0, 100.0], [100.0, 100.0], [140.0, 100.0]]  # a road to compile the simulator on
@@ -241,12 +241,9 @@ def run_test(points: Any, index: int, request: Request, generating: float, is_te
     """Validates and drives one test of control points ``(n, 2)`` in metres, which took ``generating`` seconds
     to make. If ``is_test`` is False, the generator submitted something else, and the Run is invalid."""
 
-    def invalid(message: str, road: Road | None = None) -> Run:
-        findings = (Finding("sbft", message),)
-        return Run(
-            request, index, request.seed, "INVALID", message, road=road, findings=findings,
-            seconds=Seconds(generating),
-        )  # fmt: skip
+    def invalid(message: str) -> Run:
+        findings, seconds = (Finding("sbft", message),), Seconds(generating)
+        return Run(request, index, request.seed, "INVALID", message, findings=findings, seconds=seconds)
 
     if not is_test:
         return invalid(WRONG_TYPE)
@@ -255,11 +252,8 @@ def run_test(points: Any, index: int, request: Request, generating: float, is_te
         return invalid(TOO_FEW)
     try:
         road = Road.through(table)
-        is_valid, message = sbft_verdict(table, request.world.site.map_size)
     except RoadGPTError as error:
         return invalid(str(error))
-    if not is_valid:
-        return invalid(message, road)
     try:
         run = prove(road, request.seed, request.world, request.setup, index)
     except PartError:

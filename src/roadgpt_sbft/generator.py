@@ -12,15 +12,14 @@ from dataclasses import replace
 from itertools import count
 from typing import Any, TypeVar
 
+from roadgpt import chat, plugins
 from roadgpt.brief.model import Brief
 from roadgpt.campaign.model import Cell, Proposal, Result
-from roadgpt.chat import ReplyError
 from roadgpt.design import draft_road
 from roadgpt.errors import DesignError, UsageError
 from roadgpt.geometry import interpolate
-from roadgpt.road import ORACLES, Design, Limits, Road, Site, World, build
-from roadgpt.run import Request, Setup, brief_of, perform
-from roadgpt.run.execution import FEWEST_RECORDS, features_of, features_of_drive
+from roadgpt.road import Design, Road, World, build
+from roadgpt.run import Request, Setup, brief_of, execution, perform
 from roadgpt_sbft.client import ClientTestGenerator
 from roadgpt_sbft.validator import sbft_verdict
 from roadgpt_search.behaviour import behaviour_of
@@ -97,12 +96,12 @@ class RoadSearch:
         the distance in metres from the car's middle to the edge of its lane, negative outside. ``outside`` is
         where the car was farthest outside, ``[x, y]`` in metres."""
         asked, self._asked = self._asked, None
-        if asked is None or outcome not in ("PASS", "FAIL") or len(distances) < FEWEST_RECORDS:
+        if asked is None or outcome not in ("PASS", "FAIL") or len(distances) < execution.FEWEST_RECORDS:
             return
         road, blank = asked
         margin = min(distances) + (self._world.limits.oob_tolerance - 0.5) * CAR_WIDTH
-        features = behaviour_of(road, self._brief) | features_of(interpolate(road.control_points()))
-        features |= features_of_drive(steering, distances)
+        features = behaviour_of(road, self._brief) | execution.features_of(interpolate(road.control_points()))
+        features |= execution.features_of_drive(steering, distances)
         self._told.append(
             replace(
                 blank,
@@ -152,7 +151,7 @@ class RoadGPTTestGenerator(ClientTestGenerator):
 
     def roads(self) -> Iterator[Points]:
         """Yields roads as the client does; raises DesignError after 20 failed attempts in a row."""
-        world = World(site=Site(map_size=float(self.map_size)), limits=Limits(**ORACLES["thesis"]))
+        world = World().changed(map_size=float(self.map_size), oracle="thesis")
         setup = Setup(reader=self.reader, designer=self.designer, drives=False, chat=_chat(self))
         brief = brief_of(self.description, world, setup)
         if brief.friction is not None:
@@ -165,7 +164,7 @@ class RoadGPTTestGenerator(ClientTestGenerator):
         while True:
             try:
                 road = another()
-            except (DesignError, ReplyError):
+            except (DesignError, chat.ReplyError):
                 failures += 1
                 if failures >= GIVE_UP:
                     raise
@@ -230,8 +229,5 @@ def _yes_or_no(text: str | None, usual: bool) -> bool:
 
 def _chat(made: RoadGPTTestGenerator) -> Any:
     """Returns the settings of the language model if the designer or the reader needs one, else None."""
-    from roadgpt import plugins
-    from roadgpt.chat import asks_a_model, configured
-
     parts = (plugins.find("designers", made.designer), plugins.find("readers", made.reader))
-    return configured({}) if any(map(asks_a_model, parts)) else None
+    return chat.configured({}) if any(map(chat.asks_a_model, parts)) else None

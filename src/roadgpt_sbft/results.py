@@ -17,9 +17,7 @@ from roadgpt.brief.model import Frozen
 from roadgpt.campaign.run_folder import Tables, entries_of, writing
 from roadgpt.errors import UsageError, explained
 from roadgpt.geometry import interpolate
-from roadgpt.run import Draw, Request, Run
-from roadgpt.run.atomic import json_text, missing, take_away, write_whole
-from roadgpt.run.execution import features_of, records_of, test_name
+from roadgpt.run import Draw, Request, Run, atomic, execution
 from roadgpt.run.folder import RUNS, write_run_folder
 from roadgpt_sbft.tables import SETTINGS, write_settings
 
@@ -61,7 +59,7 @@ def new_folder(experiment: Experiment, out: Path | None = None) -> tuple[Path, t
     name = f"{experiment.module_name}_{experiment.class_name}_{stamp}".replace("/", "-").replace("\\", "-")
     folder = HOME / name if out is None else out
     with explained(UsageError, f"cannot use {folder}", "name another folder with --out"):
-        made = missing(folder)
+        made = atomic.missing(folder)
         folder.mkdir(parents=True, exist_ok=True)
         is_used = any(folder.iterdir())
         (folder / RUNS).mkdir(exist_ok=True)
@@ -84,7 +82,9 @@ class Results:
         test = test_of(run)
         with writing(self.folder):
             write_run_folder(run, self.folder, self._draw)
-            write_whole(self.folder / test_name(run.index), json_text(test, indent=None))
+            atomic.write_whole(
+                self.folder / execution.test_name(run.index), atomic.json_text(test, indent=None)
+            )
             self.numbers.add(run.index)
             self._tables.add(entries_of(run))
             self._tables.write()
@@ -109,7 +109,7 @@ class Results:
         """Removes the tables and the files in ``names``; then the folders that were created for them, if they
         are empty."""
         every = (*self._tables.files, *names)
-        take_away((self.folder / name for name in every), (self.folder / RUNS, *self._made))
+        atomic.take_away((self.folder / name for name in every), (self.folder / RUNS, *self._made))
 
 
 def test_of(run: Run) -> dict[str, Any]:
@@ -126,9 +126,8 @@ def test_of(run: Run) -> dict[str, Any]:
     }
     if not run.is_valid:
         return test
-    records = (
-        records_of(run.road, run.drive, run.world) if run.road is not None and run.drive is not None else []
-    )
+    drive = run.drive
+    records = [] if run.road is None or drive is None else execution.records_of(run.road, drive, run.world)
     lowered = [one._replace(pos=[*one.pos[:2], round(one.pos[2] + HEIGHT, 4)]) for one in records]
     said = run.description if run.verdict is None else run.verdict.sbft_description
     if run.verdict is not None and said != SUCCESS:
@@ -137,5 +136,5 @@ def test_of(run: Run) -> dict[str, Any]:
         "execution_data": lowered,
         "test_outcome": run.outcome,
         "description": said,
-        "features": features_of(nodes, lowered),
+        "features": execution.features_of(nodes, lowered),
     }

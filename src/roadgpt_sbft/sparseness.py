@@ -22,8 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry import interpolate
-from roadgpt.run.execution import ExecutionRecord
-from roadgpt.run.step_distance import distances, steps_of
+from roadgpt.run import execution, step_distance
 
 Array = NDArray[np.float64]
 
@@ -57,7 +56,10 @@ class Departure(NamedTuple):
 
 
 def departure(
-    points: ArrayLike, records: Sequence[ExecutionRecord], before: float = AROUND, after: float = AROUND
+    points: ArrayLike,
+    records: Sequence[execution.ExecutionRecord],
+    before: float = AROUND,
+    after: float = AROUND,
 ) -> Departure | None:
     """Returns where the car left its lane in a failed test, as the competition's analysis finds it, from
     control points of the road, metres, and the execution data; ``before`` and ``after`` are metres of road
@@ -114,7 +116,7 @@ def _foot(line: Array, place: Sequence[float]) -> tuple[Array, float]:
     return feet[nearest], float(away[nearest])
 
 
-def _first_record(line: Array, start: Array, records: Sequence[ExecutionRecord]) -> int:
+def _first_record(line: Array, start: Array, records: Sequence[execution.ExecutionRecord]) -> int:
     """Returns the index of the first record next to a segment's start; 0 if there is none."""
     for number, record in enumerate(records):
         foot, _ = _foot(line, record.pos[:2])
@@ -135,10 +137,10 @@ class Sparseness:
 
     def add(self, number: int, points: ArrayLike) -> None:
         """Adds a failure: the number of its test, and the points ``(n, 2)`` of its road segment in metres."""
-        row = steps_of(points)
-        apart = dict(zip(self._rows, distances(row, [*self._rows.values()]).tolist(), strict=True))
+        row = step_distance.steps_of(points)
+        apart = step_distance.distances(row, [*self._rows.values()]).tolist()
         key = (number, len(self._rows))
-        for other, distance in apart.items():
+        for other, distance in zip(self._rows, apart, strict=True):
             first = min(key, other)
             self._furthest[first] = max(self._furthest.get(first, 0.0), distance)
         self._rows[key] = row

@@ -11,9 +11,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from roadgpt.run import Outcome, Request, Run, Seconds
-from roadgpt.run.atomic import csv_text, write_whole
-from roadgpt.run.execution import records_of
+from roadgpt.run import Request, Run, Seconds, atomic, execution
 
 if TYPE_CHECKING:
     from roadgpt_sbft.sparseness import Departure, Sparseness  # only failures need it
@@ -32,7 +30,7 @@ class TallyEntry(NamedTuple):
     """The values of one Run that are counted."""
 
     number: int  # number of the road, from 1
-    outcome: Outcome
+    outcome: str
     is_valid: bool
     seconds: Seconds
     simulated: float  # duration of the drive, seconds of simulated time; 0 if the road was not driven
@@ -46,7 +44,7 @@ class TallyEntry(NamedTuple):
         if run.outcome == "FAIL" and run.road is not None and run.drive is not None:
             from roadgpt_sbft.sparseness import departure
 
-            found = departure(run.road.control_points(), records_of(run.road, run.drive, run.world))
+            found = departure(run.road.control_points(), execution.records_of(run.road, run.drive, run.world))
         simulated = run.drive.duration if run.drive is not None else 0.0
         return cls(run.index, run.outcome, run.is_valid, run.seconds, simulated, found)
 
@@ -101,7 +99,7 @@ class Tally:
             "stdev_sparseness": f"{self.spread.deviation if self.spread else math.nan:3.0f}",
         }
         for name, row in zip(TABLES, (generation, departures), strict=True):
-            write_whole(folder / name, csv_text(row, [row.values()]))
+            atomic.write_whole(folder / name, atomic.csv_text(row, [row.values()]))
 
     @staticmethod
     def describe(request: Request, roads: int, folder: Path) -> None:
@@ -129,4 +127,4 @@ def write_settings(
     row: dict[str, object] = dict.fromkeys(SETTINGS, "") | known | dict(theirs)
     rest = {name: value for name, value in world.model_dump().items() if name not in row}
     row |= dict(ours) | rest
-    write_whole(folder / DESCRIPTION, csv_text(row, [row.values()]))
+    atomic.write_whole(folder / DESCRIPTION, atomic.csv_text(row, [row.values()]))

@@ -67,7 +67,7 @@ def _complaint(nodes: Array, map_size: float) -> str:
     left, right = edges(nodes)
     if not _passes_for_inside(nodes, map_size) or _meets_border(left, right, map_size):
         return OUTSIDE
-    if not keeps_clear(ribbon.quads_of(left, right)):
+    if not keeps_clear(left, right):
         return CROSSING
     apart = nodes[-1] - nodes[0]  # the road is no shorter than the distance between its ends
     if apart @ apart <= (MIN_LENGTH + 1) ** 2 and measured_length(nodes) <= MIN_LENGTH:
@@ -110,11 +110,12 @@ def _meets_border(left: Array, right: Array, map_size: float) -> bool:
         return False
 
 
-def keeps_clear(quads: Array) -> bool:
-    """Returns whether all quads are valid, neighbouring quads share exactly one edge, and all other pairs
-    of quads are disjoint."""
+def keeps_clear(left: Array, right: Array) -> bool:
+    """Returns whether all quads between edge points ``(n, 2)`` are valid, neighbouring quads share exactly
+    one edge, and all other pairs of quads are disjoint."""
     import shapely
 
+    quads = ribbon.quads_of(left, right)
     plain = ribbon.is_convex(quads)
     if not np.isfinite(quads[~plain]).all():
         return False
@@ -225,7 +226,7 @@ def _too_tight(road: Road, nodes: Array, limit: float) -> Finding | None:
 def _touching(
     network: Network, road: Road, rows: Sequence[tuple[Array, Array]], world: World
 ) -> Finding | None:
-    if all(keeps_clear(ribbon.quads_of(*row)) for row in rows):
+    if all(keeps_clear(*row) for row in rows):
         return None
     from roadgpt.check.rules.no_overlap import overlap_with_itself  # compiled code, which few roads need
 

@@ -15,16 +15,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.drive.drivers.beamng_like import PURSUIT_CUTS, BeamngLike
+from roadgpt.drive.drivers import beamng_like
 from roadgpt.drive.driving_line import stations
 from roadgpt.errors import RoadGPTError
-from roadgpt.road import Limits, Road, Site, World
+from roadgpt.road import Road, World
 
 log = logging.getLogger(__name__)
 
 Array = NDArray[np.float64]
 
-PLAIN = World(site=Site(map_size=10_000.0), limits=Limits(speed_limit=120 / 3.6, oob_tolerance=0.5))
+PLAIN = World().changed(map_size=10_000.0, speed_limit=120 / 3.6, oob_tolerance=0.5)
 FARTHEST = 20.0  # m, upper bound of the distance from the middle of the lane
 LONGEST = 20_000.0  # m, longest road that is examined
 SHORTEST = 0.01  # m; closer points count as one
@@ -70,10 +70,10 @@ def risk_features(points: Sequence[Sequence[float]], world: World = PLAIN) -> Ri
 
 
 def _features(road: Road, world: World) -> RiskFeatures:
-    s, driver = stations(road), BeamngLike()
+    s, driver = stations(road), beamng_like.BeamngLike()
     bend = np.abs(road.curvature(s))
     aside = driver.offsets(road, world) - world.profile_of(road).middle(s)
-    away = np.abs(aside + PURSUIT_CUTS * driver.bend(road, world))
+    away = np.abs(aside + beamng_like.PURSUIT_CUTS * driver.bend(road, world))
     counts = (s >= GETTING_GOING) & (s <= road.length - ARRIVED)
     away = away[counts] if counts.any() else away
     features = (
