@@ -1,5 +1,5 @@
 # make demo    words to driven roads and pictures, from nothing but Python, pip and make
-# make test    format, types and every test; ends with the seconds it took
+# make test    format, types and every test; ends with the ten dearest tests and the seconds it took
 # make bench   the figures of benchmarks/        make docs    the site in site/
 #              with SIZE=smallest: whether each of them runs
 # make figures the outputs and pictures of README and docs, from the commands beside them
@@ -67,7 +67,7 @@ test: $(VENV)/.installed-test judges/.installed judges/.browser
 	  $(BIN)/python -m roadgpt run "a straight road of 25 m" --no-plot --out "$$(mktemp -d)/seen" \
 	    --driver examples/vision/small_network.py:SmallNetwork; } > /dev/null & \
 	  $(BIN)/python -m mypy && wait $$!
-	$(BIN)/python -m pytest -n 3 --dist worksteal
+	$(BIN)/python -m pytest -n 3 --dist worksteal --durations 10
 	@echo "make test: $(SECONDS_SO_FAR) s"
 
 bench: $(VENV)/.installed-test
