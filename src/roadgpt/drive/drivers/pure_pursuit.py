@@ -24,7 +24,7 @@ class PurePursuit:
     """Steers along a circle to a point ahead in the middle of the lane; ignores tyre slip.
 
     It cuts bends at low speed and runs wide at high speed: a weak baseline. In junctions it drives no faster
-    than people do, and it stops at stop signs (``roadgpt.drive.driving_line``).
+    than people do (``roadgpt.drive.driving_line``), and it stops at stop signs.
 
     Args:
         risk: planned lateral acceleration in bends, in g; at most 0.95 times the friction.

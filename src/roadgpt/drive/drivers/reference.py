@@ -22,8 +22,8 @@ class Reference:
     accurate path tracking and stability at the limits of handling", Vehicle System Dynamics 53 (2015): the
     steady-state steering angle for the bend ahead, plus feedback on the lateral error at a point ahead of the
     car, with the slip angle taken into account. The planned speed respects the friction circle, and takes
-    grades, crests and superelevation into account. In junctions it drives no faster than people do, and it
-    stops at stop signs (``roadgpt.drive.driving_line``).
+    grades, crests and superelevation into account. In junctions it drives no faster than people do
+    (``roadgpt.drive.driving_line``), and it stops at stop signs.
 
     Args:
         risk: planned lateral acceleration in bends, in g; at most 0.72 times the friction.
