@@ -323,6 +323,26 @@ def test_help_answers_at_once(words: list[str]) -> None:
     assert rooms_used <= {"cli", *HALLWAY}
 
 
+def test_a_plain_road_loads_only_what_it_needs(tmp_path: Path) -> None:
+    """Neither networks, land, others on the road and scenarios, nor what other commands and options need."""
+    words = ["run", "a road", "--seed", "1", "--out", str(tmp_path / "out")]
+    done = subprocess.run([sys.executable, "-c", TELLING, *words], capture_output=True, text=True, check=True)
+    loaded = {*done.stderr.splitlines()[-1].split()}
+    assert {"roadgpt.drive.simulators.mujoco", "roadgpt.report.overview"} <= loaded
+    others = {
+        "brief.scenarios",
+        "chat.config",
+        "cli.junit",
+        "cli.roads",
+        "export",
+        "ground.ground",
+        "traffic",
+    }
+    others |= {f"network.{name}" for name in ("landscape", "lanes", "markings", "paved", "route", "source")}
+    assert not {f"roadgpt.{name}" for name in others} & loaded
+    assert len([name for name in loaded if name.startswith("roadgpt")]) <= 180
+
+
 def test_the_pins_cover_every_dependency_and_name_no_place() -> None:
     pins = (ROOT / "constraints.txt").read_text(encoding="utf-8")
     pinned = {re.sub(r"[-_.]+", "-", name).lower() for name in re.findall(r"^([\w.-]+)==[\w.]+$", pins, re.M)}
