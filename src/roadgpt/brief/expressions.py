@@ -12,29 +12,16 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, unaccented
 from roadgpt.errors import BriefError
 
-MAP, GROUND, ON, ARTICLE, OF, UNIT, BY, SQUARE, SIZE, IS = (
-    TABLE["map_size"][name].replace("\n", "")
-    for name in ("map", "ground", "on", "article", "of", "unit", "by", "square", "size", "is")
-)
-NUMBER = r"(\d+(?:[.,]\d+)?)"
-METRES = rf"{NUMBER}[ -]?({UNIT})\b"
-TWO = rf"{NUMBER}(?:[ -]?({UNIT})\b)?{BY}{METRES}"
-MAP_SIZES = tuple(
-    re.compile(form, re.IGNORECASE)
-    for form in (
-        rf"(?P<on>(?:\b{ARTICLE} |\bour |\bmy )?\b{MAP}{IS} {OF})(?P<rest>){TWO}(?: {SQUARE})?",
-        rf"(?P<on>(?:\b{ARTICLE} |\bour |\bmy )?\b{MAP}{IS} {OF})(?P<rest>){METRES} {SQUARE}",
-        rf"(?P<on>\b{ON} )?(?P<rest>\b(?:{ARTICLE} )?(?:{MAP}|{GROUND})) {OF}{TWO}(?: {SQUARE})?",
-        rf"(?P<on>\b{ON} )?(?P<rest>\b(?:{ARTICLE} )?(?:{MAP}|{GROUND})) {OF}{METRES} {SQUARE}",
-        rf"(?P<on>\b{ON} )?(?P<rest>\b(?:{ARTICLE} )?){TWO}[ -](?:{SQUARE} )?(?P<noun>{MAP}|{GROUND})",
-        rf"(?P<on>\b{ON} )?(?P<rest>\b(?:{ARTICLE} )?){METRES}[ -]{SQUARE} (?P<noun>{MAP}|{GROUND})",
-        rf"(?P<on>\b{ON} )(?P<rest>(?:{ARTICLE} )?{MAP}) {OF}{METRES}(?! (?:of|de|von|di)\b)",
-        rf"(?P<on>\b{ON} )(?P<rest>(?:{ARTICLE} )?){METRES}[ -](?P<noun>{MAP})",
-        rf"(?P<on>(?:^|(?<=[.;] ))(?:{ARTICLE} )?)(?P<rest>){METRES}[ -]{MAP}(?=[,.;:])",
-        rf"(?P<on>\b{SIZE}(?: of| von| de| di|:| =| is)? )(?P<rest>){TWO}",
-        rf"(?P<on>\b{SIZE}(?: of| von| de| di|:| =| is)? )(?P<rest>){METRES}",
-    )
-)
+PARTS = {name: text.replace("\n", "") for name, text in TABLE["map_size"].items() if name != "forms"}
+
+
+def _filled(form: str) -> str:
+    while "{" in form:
+        form = re.sub(r"\{([a-z]+)\}", lambda part: PARTS[part[1]], form)
+    return form
+
+
+MAP_SIZES = tuple(re.compile(_filled(form), re.IGNORECASE) for form in TABLE["map_size"]["forms"])
 ONLY_SIZE = "this gives only the size of the map; say what the road should be like, such as 'two sharp turns'"
 LOOSE = re.compile(r"^[\s,;:.]+|[,;:]\s*(?=[,;:.!?]|$)|\s+(?=[,.;:!?])")
 """Spaces and marks that are left over where words were taken out."""
@@ -55,7 +42,7 @@ def said_map_size(words: str) -> tuple[float, str] | None:
     factors = [
         1000.0 if each.lower().startswith(("k", "chil")) else 1.0
         for each in found.groups()
-        if each and re.fullmatch(UNIT, each, re.IGNORECASE)
+        if each and re.fullmatch(PARTS["unit"], each, re.IGNORECASE)
     ]
     metres = min(
         float(number.replace(",", ".")) * factors[min(n, len(factors) - 1)]

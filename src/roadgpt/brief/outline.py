@@ -15,8 +15,6 @@ from roadgpt.brief.map_fit import has_low_grades, has_wide_turns
 from roadgpt.brief.model import Amount, Brief, Clause, span
 from roadgpt.brief.normal import (
     BUMPS,
-    SHAPED,
-    STRAIGHT,
     clauses_turn,
     turns_of,
     with_continued_grades,
@@ -54,11 +52,9 @@ wider bend is not a turn."""
 USUALLY_STEEPEST = 12.0  # percent, of a part whose height is given and whose length and grade are open
 BUMP_SLOPES: Mapping[Kind, tuple[Slope, Slope]] = {"crest": ("up", "down"), "dip": ("down", "up")}
 STRAIGHT_ON = Clause(kind="straight")
-TOGETHER = frozenset({"s_bend", "chicane"}) | (SHAPED - {"turn"}) | {"slalom"}
-"""The kinds that consist of several turns; the turns share the height of the clause."""
+TOGETHER = {name: kind.names[0] for name, kind in KINDS.items() if kind.turns and kind.turns.lo > 1}
+"""The kinds that consist of several turns, with their names; the turns share the height of the clause."""
 NO_LIMIT = Range()
-OF_SEVERAL = frozenset(kind.names[0] for kind in KINDS.values() if kind.turns and kind.turns.lo > 1)
-"""The names of features that consist of several turns, such as 'S-bend'."""
 Sloped = TypeVar("Sloped", Brief, Clause)
 KEEPS_OWN_ANGLE = frozenset({"hairpin", "switchback", "u_turn", "serpentine", "zigzag", "slalom"})
 
@@ -124,7 +120,7 @@ class Group:
     @property
     def counted(self) -> str:
         """The number and kind of the features, such as '2 or more hairpins' or '4 serpentine turns'."""
-        noun = self.feature.name + (" turn" if self.feature.name in OF_SEVERAL else "")
+        noun = self.feature.name + (" turn" if self.feature.name in TOGETHER.values() else "")
         return f"{Range(self.lo, inf if self.hi is None else self.hi)} {noun}{'' if self.hi == 1 else 's'}"
 
     def __str__(self) -> str:
@@ -326,7 +322,7 @@ def _straight(clause: Clause) -> Feature:
 def climb_of_each(clause: Clause) -> Amount | None:
     """Returns how many metres each single turn or straight of a clause rises or falls; None if the clause
     asks for no height. The turns of an S-bend share its height equally."""
-    if clause.climb is None or clause.kind in STRAIGHT or clause.kind not in TOGETHER:
+    if clause.climb is None or clause.kind not in TOGETHER:
         return clause.climb
     turns = KINDS[clause.kind].turns
     share = turns.lo if turns else 1.0

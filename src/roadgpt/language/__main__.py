@@ -34,8 +34,8 @@ def names() -> str:
     lines = ['"""The names in the table, as types. Made by ``python -m roadgpt.language``."""', ""]
     lines += ["from typing import Literal", "", "# fmt: off"]
     for type_, those in rows.items():
-        names_ = textwrap.fill(", ".join(f'"{name}"' for name in those), 105)
-        lines += [f"{type_} = Literal[", textwrap.indent(names_, "    "), "]"]
+        row = f"{type_} = Literal{[*those]}".replace("'", '"')
+        lines += textwrap.wrap(row, 109, subsequent_indent="    ")
     return "\n".join(lines) + "\n"
 
 

@@ -5,9 +5,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import STRAIGHT
 from roadgpt.brief.plan import read_plan
 from roadgpt.errors import BriefError
-
-OF_TURNS = {"side", "alternating", "sharpness", "degrees", "radius"}
-"""Fields that only turns have; only straights have a size."""
+from roadgpt.language.table import PARTS
 
 
 class PlanReader:
@@ -20,9 +18,10 @@ class PlanReader:
             BriefError: the plan is empty, has an unknown word, or contradicts itself."""
         if not words.strip():
             raise BriefError("the plan is empty; write for example 'turn left 90 r30; straight 40'")
-        brief = read_plan(words)
+        brief, parts = read_plan(words), PARTS["clause"]
         for clause in filter(None, (*brief.clauses, brief.starts, brief.ends)):
-            unsuited = clause.model_fields_set & (OF_TURNS if clause.kind in STRAIGHT else {"size"})
+            other = "turns" if clause.kind in STRAIGHT else "straights"
+            unsuited = {field for field in clause.model_fields_set & parts.keys() if parts[field].of == other}
             if unsuited:
                 raise BriefError(f"a {clause.kind} has no {min(unsuited)}; leave it out of the plan")
         check(brief, map_size=None, min_radius=0.0)  # the limits of a World are checked in brief.read

@@ -3,22 +3,12 @@
 import re
 from collections.abc import Iterator
 
-from roadgpt.brief.languages import word_set
+from roadgpt.brief.languages import TABLE, pattern_of, word_set
 
-HOURS = ["one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"]
-TIME = re.compile(
-    r"(?<![\d.,:/-])(?P<hour>[01]?\d|2[0-3])(?P<between>[:.h])(?P<minute>[0-5]\d)(?![\d:./]|,\d)"
-    r"(?P<sign>\s*(?:hrs|hours|uhr|o'clock|h)\b)?(?:\s*(?P<half>[ap])\.?\s?m\b)?"
+HOURS = TABLE["clock"]["hours"].split()
+TIME, FOUR_DIGITS, FULL_HOUR, LATER, SURE_BEFORE = (
+    pattern_of(name, "clock") for name in ("time", "four_digits", "full_hour", "later", "sure_before")
 )
-"""Hours and minutes; a point between them tells a time only with a word behind it."""
-FOUR_DIGITS = re.compile(r"\b(?P<hour>[01]\d|2[0-3])(?P<minute>[0-5]\d)\s*(?:hrs|hours)\b")
-FULL_HOUR = re.compile(
-    r"(?<![\d.,:/-])(?P<hour>1[0-2]|0?[1-9])\s*(?P<half>[ap])\.?\s?m\b"
-    r"|(?<![\d.,:/-])(?P<uhr>[01]?\d|2[0-3])\s*(?:uhr|o'clock)\b"
-    rf"|\b(?P<word>{'|'.join(HOURS)}|1[0-2]|[1-9]) in the (?P<part>morning|afternoon|evening)\b"
-)
-LATER = re.compile(r"^[\s,]*in the (?:afternoon|evening)\b")
-SURE_BEFORE = re.compile(r"(?:\bat|\babout|\baround|\bum|\bgegen|\bore|\balle|\bà|\blas|\(|,)\s*$")
 
 
 def told_time(words: str) -> str | None:
