@@ -1,28 +1,20 @@
 """Reads what land somebody wants: 'a valley between two ridges', 'hilly land with a lake'."""
 
 import re
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from roadgpt.brief.amount import exactly
-from roadgpt.brief.scene import Land, Lie
+from roadgpt.brief.scene import LAND_KINDS, Land, Lie
 from roadgpt.brief.words import LandKind
 from roadgpt.language.names import Landform
+from roadgpt.language.table import LANDFORMS, SCENES
 
-KINDS: dict[str, LandKind] = {
-    "flat": "flat", "level": "flat", "plain": "flat", "rolling": "rolling", "gentle": "rolling",
-    "hills": "hilly", "hilly": "hilly", "hill": "hilly", "mountain": "mountain", "mountains": "mountain",
-    "mountainous": "mountain", "alpine": "mountain", "steep": "mountain",
-}  # fmt: skip
-FORMS: dict[str, Landform] = {
-    "valley": "valley", "ridge": "ridge", "cliff": "ridge", "lake": "lake", "pond": "lake", "river": "river",
-    "stream": "river", "coast": "coast", "sea": "coast", "shore": "coast", "forest": "forest",
-    "wood": "forest", "trees": "forest",
-}  # fmt: skip
+SAID: Mapping[str, str] = SCENES["words_of_land"]
+KINDS: dict[str, LandKind] = {word: kind for kind in LAND_KINDS for word in SAID[kind].split()}
+FORMS: dict[str, Landform] = {word: form for form in LANDFORMS for word in SAID.get(form, "").split()}
 NUMBERS = {"two": 2, "three": 3, "four": 4}
 LIES: dict[str, Lie] = {"along": "along", "across": "across", "through": "through", "crossed": "across"}
-SMALL = {
-    "a", "an", "the", "with", "of", "in", "on", "by", "to", "at", "land", "terrain", "country", "landscape",
-}  # fmt: skip
 
 
 class LandWish(NamedTuple):
@@ -61,7 +53,7 @@ def land_in(words: str) -> LandWish:
                 is_between, count = True, 1
             elif word in ("left", "right") and own:
                 own[-1] = own[-1].model_copy(update={"side": word})
-            elif word not in SMALL:
+            elif word not in SAID["small"].split():
                 unused.append(word)
         lands += own
     return LandWish(kind, tuple(lands), tuple(unused))

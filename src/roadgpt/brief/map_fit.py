@@ -133,7 +133,7 @@ def _way(clause: Clause, min_radius: float) -> float:
         return least if least > -inf else size.lo if size else LEAST_STRAIGHT
     least, _ = turns_of(clause)
     arc = prod(_bend(clause, min_radius), start=pi / 180)
-    return least * max(arc + (0 if clause.kind in ("s_bend", "chicane") else GAP), WAY_OF_A_TURN * 0.8)
+    return least * max(arc + (0 if KINDS[clause.kind].whole else GAP), WAY_OF_A_TURN * 0.8)
 
 
 def _bend(clause: Clause, min_radius: float) -> tuple[float, float]:
@@ -148,8 +148,6 @@ def _bend(clause: Clause, min_radius: float) -> tuple[float, float]:
     return angle, max(radius, min_radius)
 
 
-OPEN_KINDS = frozenset({"turn", "s_bend", "winding"})
-"""The kinds of turns whose radius is not fixed by their kind."""
 SHORTEST_CURVE = 320.0  # metres
 BETWEEN = 17.5  # metres from one turn to the next, at least
 LEADS = 33.0  # metres of straight before the first turn and after the last turn together
@@ -230,7 +228,7 @@ def _curve(clause: Clause) -> float:
 def _is_tighter(brief: Brief) -> bool:
     clauses = (*brief.clauses, *brief.both_ends)
     things: tuple[Brief | Clause, ...] = (brief, *clauses)
-    return any(clause.kind not in OPEN_KINDS | STRAIGHT for clause in clauses) or any(
+    return any(not (KINDS[clause.kind].wide or clause.kind in STRAIGHT) for clause in clauses) or any(
         thing.sharpness == "sharp" or span(thing.radius).hi * (1 + LENGTH_SLACK) < MOTORWAY_RADIUS
         for thing in things
     )

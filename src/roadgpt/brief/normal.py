@@ -18,14 +18,13 @@ from roadgpt.brief.model import (
     exactly,
     span,
 )
+from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import KINDS
-from roadgpt.language.names import Kind, Side, Slope
+from roadgpt.language.names import Side, Slope
 
-STRAIGHT: frozenset[Kind] = frozenset({"straight", "crest", "dip"})
-BUMPS: frozenset[Kind] = frozenset({"crest", "dip"})
-SINGLE: frozenset[Kind] = frozenset({"turn", "hairpin", "switchback", "u_turn"})
-SHAPED: frozenset[Kind] = frozenset({"turn", "s_bend", "winding", "serpentine", "zigzag"})
-"""The kinds of turns whose sharpness is not fixed by their kind."""
+STRAIGHT = frozenset(kind for kind, row in KINDS.items() if row.turns is None)
+BUMPS = STRAIGHT - {"straight"}
+SINGLE = frozenset(kind for kind, row in KINDS.items() if row.turns == Range(1, 1))
 MOST_SINGLE = 60
 MOST_STEPS = 9  # one step may enable another; contradictory Briefs need the most steps
 UNSAID = {"words": "", "unused": (), "confidence": 1.0, "other": ""}
@@ -162,7 +161,7 @@ def turns_of(clause: Clause) -> tuple[float, float]:
     least, most = (own.lo, own.hi) if own else (1.0, 1.0)
     # a count of 0 is refused later, by brief.feasible
     lo, hi = max(span(clause.count).lo, 1.0), max(span(clause.count).hi, 1.0)
-    if clause.kind in ("s_bend", "chicane"):
+    if KINDS[clause.kind].whole:
         return lo * least, hi * most
     return (least, most) if clause.count == exactly(1) else (lo, hi)
 
@@ -177,7 +176,7 @@ def _plain(clause: Clause) -> Clause:
         return Clause(kind=kind, slope=slope, size=None if clause.length else clause.size, **figures)
     own = KINDS[kind]
     least = own.turns.lo if own.turns else 1
-    if least > 1 and kind not in ("s_bend", "chicane") and count == at_least(least):
+    if least > 1 and not own.whole and count == at_least(least):
         count = exactly(1)
     one = count == exactly(1) and (own.turns is None or own.turns.hi == 1)
     alternating = clause.alternating and not own.alternating and not one
@@ -312,7 +311,7 @@ def _shaped(brief: Brief, clause: Clause) -> Clause:
     said = {name: getattr(clause, name) or getattr(brief, name) for name in shape}
     if clause.radius or clause.sharpness:  # its own shape is not mixed with the shape asked of the whole road
         said["sharpness"], said["radius"] = clause.sharpness, clause.radius
-    if clause.kind not in SHAPED:
+    if not KINDS[clause.kind].shaped:
         said["sharpness"] = clause.sharpness
     return clause.model_copy(update=said)
 
@@ -343,7 +342,7 @@ def _merged(brief: Brief) -> Brief:
 
 
 def _like(one: Clause, other: Clause) -> bool:
-    if one.kind not in (*SINGLE, "s_bend", "chicane") or one.kind != other.kind or one.alternating:
+    if not (one.kind in SINGLE or KINDS[one.kind].whole) or one.kind != other.kind or one.alternating:
         return False
     if KINDS[one.kind].alternating and one.side:
         return False

@@ -56,7 +56,6 @@ TOGETHER = {name: kind.names[0] for name, kind in KINDS.items() if kind.turns an
 """The kinds that consist of several turns, with their names; the turns share the height of the clause."""
 NO_LIMIT = Range()
 Sloped = TypeVar("Sloped", Brief, Clause)
-KEEPS_OWN_ANGLE = frozenset({"hairpin", "switchback", "u_turn", "serpentine", "zigzag", "slalom"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -292,7 +291,7 @@ def _turn(clause: Clause, roomy: bool, angle_is_free: bool = False) -> Feature:
     if clause.sharpness:
         sharpness = "gentle" if clause.sharpness == "sweeping" and not roomy else clause.sharpness
         radius = overlap(radius, SHARPNESS[sharpness].radius)
-        if clause.kind not in KEEPS_OWN_ANGLE:
+        if not meaning.own_angle:
             asked = SHARPNESS[sharpness].degrees or NO_LIMIT
             degrees = Range(asked.lo) if angle_is_free else asked
     if clause.degrees:
@@ -326,7 +325,7 @@ def climb_of_each(clause: Clause) -> Amount | None:
         return clause.climb
     turns = KINDS[clause.kind].turns
     share = turns.lo if turns else 1.0
-    if clause.kind not in ("s_bend", "chicane"):
+    if not KINDS[clause.kind].whole:
         share = max(share, span(clause.count).lo)
     return clause.climb.times(1 / share)
 

@@ -408,14 +408,8 @@ def _read_clause(text: str) -> Clause:
             f"a plan has no clause '{kind[:40]}'; on a road, a clause begins with one of "
             f"{', '.join(sorted(KINDS))}, and a junction with one of {', '.join(sorted(JUNCTIONS))}"
         )
-    fields: dict[str, object] = {"kind": kind}
-    for word in words:
-        if word[0] in "0123456789.":
-            _set(fields, BARE.get(kind, "degrees"), read_amount(word))
-        elif word[0] == "r" and word[1:2] in "0123456789." and word[1:]:
-            _set(fields, "radius", read_amount(word[1:]))
-        else:
-            _read_words(fields, [word], CLAUSE)
+    keyed = (re.sub(r"^r(?=[0-9.])", "r=", word) for word in words)
+    fields = _read_words({"kind": kind}, keyed, CLAUSE, BARE.get(kind, "degrees"))
     return _made(Clause, _with_side_of_climb(fields), text)
 
 
@@ -437,11 +431,15 @@ def _with_side_of_climb(fields: dict[str, object]) -> dict[str, object]:
     return {**fields, **way, "climb": climb}
 
 
-def _read_words(fields: dict[str, object], words: Iterable[str], language: Language) -> dict[str, object]:
-    """Sets the fields that words name, and returns them."""
+def _read_words(
+    fields: dict[str, object], words: Iterable[str], language: Language, bare: str = ""
+) -> dict[str, object]:
+    """Sets the fields that words name, and returns them; ``bare`` is the field of a number without a key."""
     for word in words:
         key, equals, value = word.partition("=")
-        if word in language.words:
+        if bare and word[0] in "0123456789.":
+            _set(fields, bare, read_amount(word))
+        elif word in language.words:
             _set(fields, *language.words[word])
         elif equals and key in language.keys:
             name, read = language.keys[key]
@@ -509,26 +507,27 @@ def read_scene(text: str) -> Scene:
 def scene_fields(text: str) -> dict[str, object]:
     """Returns the fields of the scene that stands in a plan, which are not yet checked against each other."""
     fields: dict[str, object] = {}
-    actors, patches, lands, rows, airs = [], [], [], set[str](), dict[str, Air]()
+    several: dict[str, list[Any]] = {name: [] for name in ("actors", "slippery", "landscape", "parked")}
+    airs = dict[str, Air]()
     for part in filter(None, map(str.strip, text.split(";"))):
         first, *words = part.replace(":", " : ").split()
         if first == "parked":
-            if len(words) != 1 or words[0] not in {*get_args(Side)} - rows:
+            if len(words) != 1 or words[0] not in {*SIDES} - {*several["parked"]}:
                 raise BriefError(
                     f"'{part[:40]}' is no row of parked cars; write parked left or parked right, each once, "
                     "or for a single car with numbers of its own: car parked right gap=40"
                 )
-            rows.add(words[0])
+            several["parked"].append(words[0])
         elif first == "oncoming" and len(words) == 1 and words[0] in (*get_args(Flow), "none"):
             _set(fields, first, words[0])
         elif first in (*ROAD_USERS, *PLACES):
-            actors.append(_read_role(part))
+            several["actors"].append(_read_role(part))
         elif first == TESTED_CAR:
             _read_words(fields, words, ITSELF)
         elif first == SLIPPERY:
-            patches.append(_made(SlipperyPlace, _read_words({}, words, A_PATCH), part))
+            several["slippery"].append(_made(SlipperyPlace, _read_words({}, words, A_PATCH), part))
         elif first in LANDFORMS:
-            lands.append(_made(Land, _read_words({"kind": first}, words, A_LAND), part))
+            several["landscape"].append(_made(Land, _read_words({"kind": first}, words, A_LAND), part))
         elif first in WEATHER and len(words) < 2:
             usual = next(usual_weather(kind) for kind in WEATHER if kind == first)
             amount = {"amount": read_amount(words[0])} if words else dict[str, object]()
@@ -545,10 +544,9 @@ def scene_fields(text: str) -> dict[str, object]:
             raise BriefError(
                 f"a scene has no '{part[:40]}'; its parts, divided by ;, begin with one of {', '.join(known)}"
             )
-    air = [airs[kind] for kind in WEATHER if kind in airs]
-    of_all: tuple[list[Any], ...] = (actors, patches, lands, sorted(rows), air)
-    several = zip(("actors", "slippery", "landscape", "parked", "weather"), of_all, strict=True)
-    return fields | {name: tuple(each) for name, each in several if each}
+    several["parked"].sort()
+    several["weather"] = [airs[kind] for kind in WEATHER if kind in airs]
+    return fields | {name: tuple(each) for name, each in several.items() if each}
 
 
 def _read_role(text: str) -> Role:
@@ -573,11 +571,7 @@ def read_action(text: str) -> Action:
     doing = next((doing for name, doing in MANEUVERS.items() if name == what), None)
     if doing is None:
         raise BriefError(f"a plan has no manoeuvre '{what[:40]}'; there are {', '.join(MANEUVERS)}")
-    for word in words:
-        if word[0] in "0123456789." and doing.numbers:
-            _set(fields, doing.numbers[0], read_amount(word))
-        else:
-            _read_words(fields, [word], AN_ACTION)
+    _read_words(fields, words, AN_ACTION, next(iter(doing.numbers), ""))
     return _made(Action, {"what": what, **fields}, text)
 
 

@@ -20,6 +20,7 @@ from roadgpt.language.table import (
     MOVING,
     NUMBERS,
     PLACES,
+    SCENES,
     SURFACES,
     WEATHER,
     one_of,
@@ -476,25 +477,15 @@ def parts_said(scene: Scene) -> Iterator[str]:
         starts.append(f"in {f'lane {scene.lane} from the kerb' if scene.lane > 0 else inner}")
     if starts:
         yield f"the tested car starts {' '.join(starts)}"
-    if scene.turn:
-        yield f"it goes {scene.turn} at the junction"
-    if scene.person:
-        yield f"where its driver hands over, a {scene.person} holds path and speed"
-    yield from map(str, scene.actors)
-    for flow, name in ((scene.flow, "traffic"), (scene.oncoming, "oncoming traffic")):
-        if flow:
-            density = "" if flow == "none" else f" ({FLOWS[flow]} vehicles for each km of a lane)"
-            yield f"{flow.replace('none', 'no')} {name}{density}"
-    if scene.parked:
-        yield f"cars parked on {'both sides' if len(scene.parked) > 1 else f'the {scene.parked[0]}'}"
-    yield from map(str, scene.weather)
-    if scene.clock:
-        yield f"at {scene.clock}"
-    if scene.light:
-        yield LIGHTS[scene.light]
-    if scene.surface:
-        yield SURFACES[scene.surface].said
-    yield from map(str, scene.slippery)
-    if scene.land:
-        yield f"{scene.land} land"
-    yield from map(str, scene.landscape)
+    phrases = {str(name): said for name, said in LIGHTS.items()}
+    phrases |= {name: row.said for name, row in SURFACES.items()}
+    for name, said in SCENES["said"].items():
+        value = getattr(scene, name)
+        if name in ("flow", "oncoming") and value:
+            density = "" if value == "none" else f" ({FLOWS[value]} vehicles for each km of a lane)"
+            yield said.format(value.replace("none", "no")) + density
+        elif name == "parked" and value:
+            yield f"cars parked on {'both sides' if len(value) > 1 else f'the {value[0]}'}"
+        elif value:
+            each_of = value if isinstance(value, tuple) else (phrases.get(value, value),)
+            yield from map(said.format, each_of)

@@ -27,7 +27,7 @@ KINDS_OF_ROADS: Mapping[str | None, str] = {
     None: "road",
     **{name: row["names"][0] for name, row in ROADS["surroundings"].items()},
 }
-WAVY = ("serpentine", "zigzag", "winding", "slalom")
+WAVY = [kind for kind, row in KINDS.items() if row.turns and row.turns.lo > 1 and not row.whole]
 """The kinds whose name stands for several turns; their ``count`` is the number of these turns."""
 
 

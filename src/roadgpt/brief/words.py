@@ -40,6 +40,11 @@ class Meaning:
     turns: Range | None = None
     """The number of turns in one feature of this kind, if the description gives no number."""
     alternating: bool = False
+    whole: bool = False
+    shaped: bool = False
+    own_angle: bool = False
+    wide: bool = False
+    """See ``roads.toml``."""
     degrees: Range | None = None
     """The change of heading of each turn in degrees; for a straight, the total change of heading along it."""
     aim: Range | None = None
@@ -60,15 +65,12 @@ def _range(ends: Sequence[float]) -> Range:
 
 def _meanings(part: str) -> dict[Any, Meaning]:
     """Returns the meanings of the words in a part of the table."""
-    ranges = {each.name for each in fields(Meaning)} - {"names", "alternating"}
-    return {
-        name: Meaning(
-            tuple(row["names"]),
-            alternating=row.get("alternating", False),
-            **{each: _range(row[each]) for each in ranges & row.keys()},
-        )
-        for name, row in ROADS[part].items()
-    }
+    known = {each.name for each in fields(Meaning)} - {"names"}
+
+    def of(row: Mapping[str, Any]) -> dict[str, Any]:
+        return {each: row[each] if row[each] is True else _range(row[each]) for each in known & row.keys()}
+
+    return {name: Meaning(tuple(row["names"]), **of(row)) for name, row in ROADS[part].items()}
 
 
 KINDS: Mapping[Kind, Meaning] = _meanings("features")

@@ -215,7 +215,7 @@ WITH_TOKENS: tuple[ActorKind, ...] = tuple(name for name, row in ROAD_USERS.item
 SIZES: Mapping[ActorKind, Size] = {name: row.size for name, row in ROAD_USERS.items()}
 USUAL_SPEEDS: Mapping[ActorKind, float] = {name: row.speed for name, row in ROAD_USERS.items() if row.speed}
 _WHO: Mapping[str, tuple[ActorKind, ...]] = {"all": tuple(ROAD_USERS), "moving": MOVING, "vehicles": VEHICLES}
-_SCENES = _table("scenes.toml")
+SCENES = _table("scenes.toml")
 ROADS = _table("roads.toml")
 """What words for roads require: features, sharpness, sizes, slopes, junctions, signs."""
 
@@ -238,22 +238,22 @@ PARTS: Mapping[str, Mapping[str, Part]] = {
 """What clauses, roads, junctions, maps and changes can have, by names of fields, in the order of plans."""
 COUNTED = "x"
 """The key of how many there are, which stands without "=" before the number."""
-ANYWHERE: tuple[Where, ...] = tuple(_SCENES["places"])
-ALONG: tuple[Where, ...] = tuple(_SCENES["sets"]["along"])
-ACROSS: tuple[Where, ...] = tuple(_SCENES["sets"]["across"])
+ANYWHERE: tuple[Where, ...] = tuple(SCENES["places"])
+ALONG: tuple[Where, ...] = tuple(SCENES["sets"]["along"])
+ACROSS: tuple[Where, ...] = tuple(SCENES["sets"]["across"])
 
 
 def _places(names: Sequence[str] = ANYWHERE) -> tuple[Where, ...]:
-    sets = _SCENES["sets"]
+    sets = SCENES["sets"]
     return cast("tuple[Where, ...]", tuple(each for name in names for each in sets.get(name, [name])))
 
 
 PLACES: Mapping[Where, PlaceRow] = {
-    name: PlaceRow(**{**row, "who": _WHO[row["who"]]}) for name, row in _SCENES["places"].items()
+    name: PlaceRow(**{**row, "who": _WHO[row["who"]]}) for name, row in SCENES["places"].items()
 }
 NUMBERS: Mapping[str, NumberRow] = {
     name: NumberRow(**{"key": name, **row, "where": _places(row.get("where", ANYWHERE))})
-    for name, row in _SCENES["numbers"].items()
+    for name, row in SCENES["numbers"].items()
 }
 MANEUVERS: Mapping[What, ManeuverRow] = {
     name: ManeuverRow(
@@ -264,10 +264,10 @@ MANEUVERS: Mapping[What, ManeuverRow] = {
             "who": _WHO[row.get("who", "vehicles")],
         }
     )
-    for name, row in _SCENES["actions"].items()
+    for name, row in SCENES["actions"].items()
 }
-CUES: tuple[str, ...] = tuple(_SCENES["cues"]["rows"])
-FLOWS: Mapping[Flow, int] = {name: row["per_km"] for name, row in _SCENES["flows"].items()}
+CUES: tuple[str, ...] = tuple(SCENES["cues"]["rows"])
+FLOWS: Mapping[Flow, int] = {name: row["per_km"] for name, row in SCENES["flows"].items()}
 """How many vehicles drive on each km of a lane."""
 WEATHER: Mapping[WeatherKind, WeatherRow] = {
     name: WeatherRow(
@@ -277,11 +277,11 @@ WEATHER: Mapping[WeatherKind, WeatherRow] = {
             "falls": Falling(**row["falls"]) if "falls" in row else None,
         }
     )
-    for name, row in _SCENES["weather"].items()
+    for name, row in SCENES["weather"].items()
 }
-LIGHTS: Mapping[Light, str] = {name: row["said"] for name, row in _SCENES["lights"].items()}
-SURFACES: Mapping[str, SurfaceRow] = {name: SurfaceRow(**row) for name, row in _SCENES["surfaces"].items()}
-LANDFORMS: Mapping[Landform, LandRow] = {name: LandRow(**row) for name, row in _SCENES["landforms"].items()}
+LIGHTS: Mapping[Light, str] = {name: row["said"] for name, row in SCENES["lights"].items()}
+SURFACES: Mapping[str, SurfaceRow] = {name: SurfaceRow(**row) for name, row in SCENES["surfaces"].items()}
+LANDFORMS: Mapping[Landform, LandRow] = {name: LandRow(**row) for name, row in SCENES["landforms"].items()}
 
 
 def one_of(kind: ActorKind) -> str:
