@@ -225,7 +225,7 @@ POSITIONS: Mapping[str, Mapping[str, bool]] = ROADS["positions"]
 NEXT_TO, MOVES = ([name for name in POSITIONS if POSITIONS[name].get(how)] for how in ("new", "moved"))
 """Where an element can be added, relative to others, and where a turn can be moved."""
 MEASURES = named_in("measures")
-ALONE = ("straighten", "remove", "mirror", "reverse", "swap", "alternate")
+ALONE = named_in("wishes")
 OF_ROAD = ("mirror", "reverse")
 """Changes that can concern the whole road."""
 WAYS = PARTS["new"]["slope"].words

@@ -1,6 +1,6 @@
 """Writes a change in words, for messages about a request that a reader turned into a plan."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from roadgpt.brief.change.request import Change, EditRequest, Place, Target
@@ -9,16 +9,7 @@ from roadgpt.language.table import PARTS, ROADS
 ORDINALS = ("", "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
 UNITS = {"degrees": " degrees", "metres": " m", "percent": " %"}
 SUPERLATIVES = PARTS["place"]["most"].words
-PLACES = {"start": "at the start", "end": "at the end", "middle": "in the middle"}
-HOW = {"up_to": "up to", "from": "from"}
-WAYS = {"up": "uphill", "down": "downhill", "flat": "level"}
-WHOLE: dict[str, Callable[[str], str]] = {
-    "straighten": "a straight instead of {}".format,
-    "remove": "{} removed".format,
-    "mirror": "{} mirrored".format,
-    "reverse": "{} the other way round".format,
-    "alternate": "{} alternately to the left and right".format,
-}
+WAYS: Mapping[str, str] = ROADS["grades"]
 
 
 def spoken(request: EditRequest) -> EditRequest:
@@ -45,16 +36,16 @@ def of_change(change: Change) -> str:
             return f"{_bounded(change, f'{change.to or 0:g}')} {_adjectives(change.target)}turns"
         case "move":
             return f"{there} moved {_position(change.place).replace('at the', 'to the')}"
-        case "swap":
-            return f"{there} and {of_target(change.like)} swapped" if change.like else f"{there} swapped"
+        case "swap" if change.like:
+            return f"{there} and {of_target(change.like)} swapped"
         case "side":
             return f"{there} to the {change.side or 'other side'}"
         case "shape":
             return f"{there} as a {' '.join(filter(None, (change.sharpness, change.kind or 'turn')))}"
         case "slope" if change.way:
             return " ".join(filter(None, (there, change.steepness, WAYS[change.way])))
-        case what if what in WHOLE:
-            return WHOLE[what](there)
+        case what if what in ROADS["wishes"]:
+            return str(ROADS["wishes"][what]).format(there)
     return f"the {change.what} of {there} {_value(change)}"
 
 
@@ -91,11 +82,11 @@ def _added(change: Change) -> str:
 
 def _position(place: Place | None) -> str:
     if place is None or place.target is None:
-        return PLACES[place.how] if place else ""
+        return f"{'in' if place.how == 'middle' else 'at'} the {place.how}" if place else ""
     first = of_target(place.target)
     if place.how == "between":
         return f"between {first} and {of_target(place.other)}"
-    return f"{HOW.get(place.how, place.how)} {first}{' on' if place.how == 'from' else ''}"
+    return f"{place.how.replace('_', ' ')} {first}{' on' if place.how == 'from' else ''}"
 
 
 def _adjectives(target: Target | None) -> str:

@@ -32,6 +32,7 @@ from roadgpt.brief.readers.model.vocabulary import (
     MULTIPLES,
     NOUNS,
     NUMBER_OF,
+    OF_ORDER,
     ONE,
     ORDER,
     PERCENTS,
@@ -482,7 +483,7 @@ def _wish(numbers: Numbers) -> Symbol:
         _position(like, "moved"),
         sequel(one_of("side"), one_of(*SIDES, "other")),
         sequel(one_of("shape"), shape),
-        one_of("straighten", "remove", "mirror", "alternate"),
+        one_of(*(wish for wish in ROADS["wishes"] if wish not in OF_ORDER)),
         sequel(one_of(ORDER), in_order(sequel(one_of("="), like))),
     )
 
