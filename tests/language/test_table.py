@@ -3,11 +3,18 @@
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import get_args
+from typing import Any, get_args
 
 import pytest
 
+from roadgpt.brief.change.plan import change_plan, read_change_plan
+from roadgpt.brief.change.request import Change, Target
+from roadgpt.brief.junctions import JunctionCount, MapClause
+from roadgpt.brief.model import Brief, Clause, JunctionClause
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.model.vocabulary import NUMBER_OF
 from roadgpt.language.__main__ import names
 from roadgpt.language.names import ActorKind, WeatherKind
 from roadgpt.language.table import (
@@ -15,10 +22,14 @@ from roadgpt.language.table import (
     NUMBERS,
     PLACES,
     ROAD_USERS,
+    ROADS,
     SURFACES,
     WEATHER,
     one_of,
     several_of,
+)
+from roadgpt.language.table import (
+    PARTS as PARTS_OF_PLANS,
 )
 from roadgpt.report.others import COLOURS
 from roadgpt.scene.bodies import PARTS
@@ -89,3 +100,54 @@ def test_one_and_several_are_english() -> None:
     assert said["e_scooter"] == ("an e-scooter", "e-scooters")
     assert said["articulated_lorry"] == ("an articulated lorry", "articulated lorries")
     assert said["person_with_pushchair"] == ("a person with a pushchair", "persons with pushchairs")
+
+
+THINGS = {
+    "clause": (Clause, "{kind} {}"), "road": (Brief, "turn | {}"), "junction": (JunctionClause, "star {}"),
+    "map": (MapClause, "map crossroads x2 {}"), "new": (Change, "add {kind} {}"),
+    "junctions": (JunctionCount, "map crossroads {}; junction"), "place": (Target, "turn {}: radius less"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("thing", THINGS)
+def test_every_part_of_a_thing_is_one_of_its_fields(thing: str) -> None:
+    model, _ = THINGS[thing]
+    fields = {*getattr(model, "model_fields", ()), *getattr(model, "__dataclass_fields__", ()), *dir(model)}
+    assert PARTS_OF_PLANS[thing].keys() <= fields
+    keys = [part.key for part in PARTS_OF_PLANS[thing].values() if part.key]
+    assert len({*keys}) == len(keys)
+
+
+@pytest.mark.parametrize("thing", THINGS)
+def test_what_plans_write_of_a_thing_is_what_they_read(thing: str) -> None:
+    _, line = THINGS[thing]
+    is_change = thing in ("place", "new")
+    read: Callable[[str], Any] = read_change_plan if is_change else read_plan
+    write: Callable[[Any], str] = change_plan if is_change else plan
+    for part in PARTS_OF_PLANS[thing].values():
+        if part.brackets or (thing == "map" and part.key in ("columns", "rows")):
+            continue
+        before = part.key if part.key in ("", "x") else f"{part.key}="
+        for value in part.words or ["75"]:
+            said = line.format(f"{before}{value}", kind="straight" if part.of == "straights" else "turn")
+            written = write(read(said))
+            assert f"{before}{value}" in re.split(r"[ ;:]+", written), said
+            assert write(read(written)) == written
+
+
+def test_what_the_networks_write_has_a_token() -> None:
+    for thing, parts in PARTS_OF_PLANS.items():
+        for name, part in parts.items():
+            if part.token and not part.brackets:
+                key = {f"{part.key}="} if part.key not in ("", "x") else set()
+                words = {*part.words} if not part.key else set()
+                assert key | words <= NUMBER_OF.keys(), (thing, name)
+
+
+def test_what_junctions_have_is_in_a_form_and_has_a_way_to_say_it() -> None:
+    for names_ in ROADS["forms"].values():
+        assert {*names_} <= PARTS_OF_PLANS["junction"].keys()
+    assert {row["form"] for row in ROADS["junctions"].values()} == ROADS["forms"].keys()
+    for thing in ("road", "junction"):
+        silent = {"slope", "surroundings", "motorway", "beside", "size", "skew", "degrees", "exit"}
+        assert PARTS_OF_PLANS[thing].keys() - silent <= ROADS["said"][thing].keys()
