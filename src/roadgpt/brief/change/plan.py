@@ -26,6 +26,7 @@ from roadgpt.brief.change.request import (
     Way,
 )
 from roadgpt.brief.plan import (
+    AN_ACTOR,
     CONDITIONS,
     SCENE,
     Language,
@@ -46,7 +47,6 @@ from roadgpt.language.table import (
     LANDFORMS,
     MANEUVERS,
     PARTS,
-    PLACES,
     ROAD_USERS,
     ROADS,
     WEATHER,
@@ -125,8 +125,7 @@ def _scene_change(change: SceneChange) -> str:
 
 def _things(things: Things) -> str:
     numbers = ",".join(map(str, things.numbers))
-    words = (things.name, numbers, "all" if things.every else "", things.where, things.side)
-    return " ".join(filter(None, words))
+    return " ".join(filter(None, [things.name, numbers, *written(things, THINGS)]))
 
 
 def _scene_wish(change: SceneChange) -> Iterator[str]:
@@ -221,6 +220,9 @@ SPACES = re.compile(r" (?=[(),=])|(?<=[(=]) ")
 KINDS = frozenset(get_args(Kind)) - {"straight", "turn"}
 NOUNS, ENDS = named_in("nouns"), cast("Mapping[str, Literal['start', 'end', 'middle']]", ROADS["ends"])
 PLACE, NEW = language(PARTS["place"]), language(PARTS["new"])
+THINGS = language(
+    {"every": PARTS["place"]["every"], **{name: AN_ACTOR.parts[name] for name in ("where", "side")}}
+)
 POSITIONS: Mapping[str, Mapping[str, bool]] = ROADS["positions"]
 NEXT_TO, MOVES = ([name for name in POSITIONS if POSITIONS[name].get(how)] for how in ("new", "moved"))
 """Where an element can be added, relative to others, and where a turn can be moved."""
@@ -381,12 +383,12 @@ class ChangeParser:
         word = self._word()
         if word in has.words:
             return has.words[word]
-        if word == COUNTED:
+        if word == COUNTED and "count" in has.parts:
             return "count", self._whole()
         if word in has.keys:
             self._need("=")
             return has.keys[word][0], self._figure()
-        if word in places or word in ENDS:
+        if word in places or (places and word in ENDS):
             return "place", self._position(word)
         raise self._error(word)
 
@@ -408,17 +410,21 @@ class ChangeParser:
         if noun not in (*NOUNS, *KINDS):
             raise self._error(noun)
         fields: dict[str, Any] = {"kind": noun} if noun in KINDS else {}
+        self._name(fields, PLACE, POSITIONS)
+        words = SPACES.sub("", " ".join(self.tokens[begun : self.at]))
+        return Target(cast(Any, "turn" if noun in KINDS else noun), words=words, **fields)
+
+    def _name(self, fields: dict[str, Any], has: Language, places: Container[str] = ()) -> None:
+        """Sets the fields that name which places or parts of a scene are meant."""
         while (word := self._next()) not in ("", ":", ")", ",", ".."):
-            if _is_number(word):
+            if _is_number(word) and "every" in has.parts:
                 self._set(fields, "numbers", self._list())
-            elif self._take("but"):
+            elif places and self._take("but"):
                 self._need("(")
                 self._set(fields, "but", self._target())
                 self._need(")")
             else:
-                self._set(fields, *self._described(PLACE, POSITIONS))
-        words = SPACES.sub("", " ".join(self.tokens[begun : self.at]))
-        return Target(cast(Any, "turn" if noun in KINDS else noun), words=words, **fields)
+                self._set(fields, *self._described(has, places))
 
     def _list(self) -> tuple[int, ...]:
         numbers = [self._whole()]
@@ -489,20 +495,10 @@ class SceneChangeParser(ChangeParser):
         return found
 
     def _things(self, name: str) -> Things:
+        has = {"every": name in LISTS, "where": name in (*ACTORS, "")}
+        has["side"] = name in (*ACTORS, *LANDS, "parked", "")
         fields: dict[str, Any] = {}
-        while (word := self._next()) not in ("", ":"):
-            if name in LISTS and _is_number(word):
-                self._set(fields, "numbers", self._list())
-                continue
-            self.at += 1
-            if name in LISTS and word == "all":
-                self._set(fields, "every", True)
-            elif name in (*ACTORS, "") and word in PLACES:
-                self._set(fields, "where", word)
-            elif name in (*ACTORS, *LANDS, "parked", "") and word in (*get_args(Side), "opposite"):
-                self._set(fields, "side", word)
-            else:
-                raise self._error(word)
+        self._name(fields, language({field: part for field, part in THINGS.parts.items() if has[field]}))
         return Things(name, **fields)
 
     def _scene_wish(self, target: Things) -> SceneChange:
