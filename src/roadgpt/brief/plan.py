@@ -40,6 +40,7 @@ from roadgpt.brief.model import (
 from roadgpt.brief.normal import BUMPS
 from roadgpt.brief.refusal import refused
 from roadgpt.brief.scene import (
+    LAND_KINDS,
     Action,
     Air,
     Land,
@@ -51,34 +52,31 @@ from roadgpt.brief.scene import (
     SlipperyPlace,
     usual_weather,
 )
-from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP, LandKind
+from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP
 from roadgpt.errors import BriefError
 from roadgpt.language.names import (
-    Control,
-    Flow,
-    JunctionKind,
-    Kind,
-    Light,
     MapJunctionKind,
-    Side,
-    Surface,
-    Surroundings,
     Way,
 )
 from roadgpt.language.table import (
     COUNTED,
+    FLOWS,
     LANDFORMS,
+    LIGHTS,
     MANEUVERS,
     NUMBERS,
     PARTS,
     PLACES,
     ROAD_USERS,
+    SURFACES,
     WEATHER,
     Part,
+    named_in,
 )
 
-KINDS = frozenset(get_args(Kind))
-JUNCTIONS: frozenset[str] = frozenset(get_args(JunctionKind))
+KINDS = frozenset(named_in("features"))
+JUNCTIONS: frozenset[str] = frozenset(named_in("junctions"))
+SIDES, WAYS = named_in("sides"), named_in("ways")
 BETWEEN = "//"
 WHOLE = "||"
 SCENE = "&&"
@@ -90,7 +88,7 @@ OF_WHOLE = {
     "map_size": "map_size",
     "beside": "beside",
     "comes_from": "from",
-    "surroundings": ", ".join(get_args(Surroundings)),
+    "surroundings": ", ".join(named_in("surroundings")),
     "speed": "speed",
 }
 """The fields of a Brief that can be asked of a whole route, with their names in plans; a map has none of the
@@ -139,8 +137,8 @@ def language(parts: Mapping[str, Part], of: str = "", **readers: Callable[[str],
 
 def _sides(text: str) -> tuple[str, ...]:
     ways = tuple(text.split("+"))
-    if not {*ways} <= {*get_args(Way)}:
-        known = " or ".join(get_args(Way))
+    if not {*ways} <= {*WAYS}:
+        known = " or ".join(WAYS)
         raise BriefError(f"a plan has no ways '{text[:40]}'; ways are {known}, joined by +")
     return ways
 
@@ -170,11 +168,11 @@ def read_ways(text: str) -> tuple[Way, ...]:
     """Returns the ways that a route takes at junctions, from a text such as "left, straight"; raises
     BriefError unless the text is 1 to 12 of left, right and straight."""
     words = [word for word in re.split(r"[+,\s]+", text) if word]
-    ways: list[Way] = [way for word in words for way in get_args(Way) if way == word]
+    ways: list[Way] = [way for word in words for way in WAYS if way == word]
     if not 1 <= len(ways) == len(words) <= LONGEST_ROUTE:
         raise BriefError(
             f"the route '{text[:40]}' through a map cannot be read; give 1 to {LONGEST_ROUTE} of "
-            f"{', '.join(get_args(Way))}, one for each junction that it passes, as in left+straight+right"
+            f"{', '.join(WAYS)}, one for each junction that it passes, as in left+straight+right"
         )
     return tuple(ways)
 
@@ -197,19 +195,18 @@ ROAD = language(
 JUNCTION, JUNCTIONS_OF_MAP = language(PARTS["junction"], "junction"), language(PARTS["junctions"])
 MAP_OF_ROADS = language(PARTS["map"], "map", route=read_ways)
 TESTED_CAR = "ego"
-SIDES = get_args(Side)
 AN_ACTOR = language(_of_scene(Role, NUMBERS, where=tuple(PLACES), side=(*SIDES, "opposite")), "road user")
 AN_ACTION = language(_of_scene(Action, NUMBERS, side=SIDES), "manoeuvre")
-OF_ITSELF = _of_scene(Scene, NUMBERS, turn=get_args(Way), person=get_args(Person)) | {"lane": Part("lane")}
+OF_ITSELF = _of_scene(Scene, NUMBERS, turn=WAYS, person=get_args(Person)) | {"lane": Part("lane")}
 ITSELF = language(OF_ITSELF, TESTED_CAR, lane=_lane_number)
 A_LAND = language(_of_scene(Land, Land.model_fields, lie=get_args(Lie), side=SIDES), "landscape")
 SLIPPERY = "slippery"
 A_PATCH = language(_of_scene(SlipperyPlace, SlipperyPlace.model_fields), "slippery place")
 CLOCK = "clock"
-CONDITIONS = {
-    word: (field, word)
-    for field, kind in {"flow": Flow, "light": Light, "surface": Surface, "land": LandKind}.items()
-    for word in get_args(kind)
+CONDITIONS: Mapping[str, tuple[str, str]] = {
+    str(word): (field, str(word))
+    for field, words in (("flow", FLOWS), ("light", LIGHTS), ("surface", SURFACES), ("land", LAND_KINDS))
+    for word in words
 }
 MARK = re.compile(
     r"\b(?:(?:after|before|in) (?:turn|junction) (?:-1|[1-9]\d?)|(?:after|with) "
@@ -384,7 +381,7 @@ def _read_map(line: str) -> MapClause:
         elif counts and re.match(r"x[\d.]", word):
             _set(counts[-1], "count", read_amount(word[1:]))
         else:
-            is_of_kind = bool(counts) and place < last and word in get_args(Control)
+            is_of_kind = bool(counts) and place < last and word in named_in("controls")
             _read_words(counts[-1] if is_of_kind else fields, [word], MAP_OF_ROADS)
     kinds = tuple(_made(JunctionCount, each, line) for each in counts)
     return _made(MapClause, {**fields, "signed" if is_grid else "junctions": kinds}, line)
@@ -518,7 +515,7 @@ def scene_fields(text: str) -> dict[str, object]:
                     "or for a single car with numbers of its own: car parked right gap=40"
                 )
             several["parked"].append(words[0])
-        elif first == "oncoming" and len(words) == 1 and words[0] in (*get_args(Flow), "none"):
+        elif first == "oncoming" and len(words) == 1 and words[0] in (*FLOWS, "none"):
             _set(fields, first, words[0])
         elif first in (*ROAD_USERS, *PLACES):
             several["actors"].append(_read_role(part))

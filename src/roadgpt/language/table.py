@@ -220,7 +220,7 @@ ROADS = _table("roads.toml")
 """What words for roads require: features, sharpness, sizes, slopes, junctions, signs."""
 
 
-def named_in(part: str) -> tuple[str, ...]:
+def named_in(part: str) -> tuple[Any, ...]:
     """Returns the names of the rows of a part of ``ROADS``."""
     return tuple(ROADS[part].get("rows", ROADS[part]))
 

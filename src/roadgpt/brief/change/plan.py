@@ -9,7 +9,7 @@ or it begins with ``add``. Behind ``&&`` stand changes of the scene, such as
 import re
 from collections.abc import Container, Iterator, Mapping
 from dataclasses import replace
-from typing import Any, Literal, TypeVar, cast, get_args
+from typing import Any, Literal, TypeVar, cast
 
 from roadgpt.brief.amount import Frozen, figure
 from roadgpt.brief.change.request import (
@@ -217,7 +217,7 @@ def read_change_plan(line: str) -> EditRequest:
 TOKEN = re.compile(r"\s*(?:(half[12]|[a-z_]+)|(-?\d+(?:\.\d+)?)|(\.\.|[;:,()=+%-]))")
 SPACES = re.compile(r" (?=[(),=])|(?<=[(=]) ")
 """Spaces between tokens that are removed from the text of a place."""
-KINDS = frozenset(get_args(Kind)) - {"straight", "turn"}
+KINDS = frozenset(named_in("features")) - {"straight", "turn"}
 NOUNS, ENDS = named_in("nouns"), cast("Mapping[str, Literal['start', 'end', 'middle']]", ROADS["ends"])
 PLACE, NEW = language(PARTS["place"]), language(PARTS["new"])
 THINGS = language(
@@ -282,7 +282,7 @@ class ChangeParser:
             return Change(cast(Any, what), None if whole else target, like=other)
         if what == "side":
             side = self._word()
-            if side not in (*get_args(Side), "other"):
+            if side not in (*named_in("sides"), "other"):
                 raise self._error(side)
             return Change("side", target, side=None if side == "other" else cast(Side, side))
         if what == "shape":
@@ -308,7 +308,7 @@ class ChangeParser:
         while word := self._next():
             if word in KINDS and change.kind is None:
                 change = replace(change, kind=cast(Kind, word))
-            elif word in get_args(Sharpness) and change.sharpness is None:
+            elif word in named_in("sharpness") and change.sharpness is None:
                 change = replace(change, sharpness=cast(Sharpness, word))
             else:
                 raise self._error(word)

@@ -50,14 +50,7 @@ from roadgpt.brief.readers.model.vocabulary import (
 from roadgpt.brief.refusal import CLASHING, OF_CAUSES
 from roadgpt.brief.scene import LAND_KINDS, ON_ITS_WAY, ONE_OF, Land, Lie, Role, SlipperyPlace
 from roadgpt.language.names import (
-    Compass,
-    Control,
-    JunctionKind,
     MapJunctionKind,
-    Sharpness,
-    Size,
-    Surroundings,
-    Take,
     What,
     Where,
 )
@@ -75,6 +68,7 @@ from roadgpt.language.table import (
     ROADS,
     SURFACES,
     WEATHER,
+    named_in,
 )
 
 
@@ -269,8 +263,8 @@ class Numbers:
         return (sequel(any_of(*ways), is_open=True),) if ways else ()
 
 
-SHARPNESS, SIZES = one_of(*get_args(Sharpness)), one_of(*get_args(Size))
-CONTROLS = one_of(*get_args(Control))
+SHARPNESS, SIZES = one_of(*named_in("sharpness")), one_of(*named_in("sizes"))
+CONTROLS = one_of(*named_in("controls"))
 LISTED_WAYS = ("left+right", "left+straight", "right+straight", "left+right+straight")
 END = "<end>"
 MOST_CLAUSES = 20
@@ -385,8 +379,8 @@ def _whole(numbers: Numbers) -> Symbol:
 
 def _junction(numbers: Numbers) -> Symbol:
     def of(form: str, names: Iterable[str]) -> Symbol:
-        kinds = [kind for kind in get_args(JunctionKind) if FORMS[kind] == form]
-        takes = (take for take in get_args(Take) if any(take in TAKES[kind] for kind in kinds))
+        kinds = [kind for kind in named_in("junctions") if FORMS[kind] == form]
+        takes = (take for take in named_in("takes") if any(take in TAKES[kind] for kind in kinds))
         return sequel(one_of(*kinds), in_order(*_parts("junction", numbers, {"take": one_of(*takes)}, names)))
 
     return any_of(*(of(form, names) for form, names in ROADS["forms"].items()))
@@ -548,8 +542,8 @@ def whole(numbers: Numbers) -> Symbol:
 
 def told(numbers: Numbers) -> Symbol:
     """Returns the symbol for a scene and the wishes before it; all of it may be left out."""
-    origin = sequel(one_of("from="), one_of(*get_args(Compass)))
-    wishes = in_order(one_of(*get_args(Surroundings), "motorway"), origin, numbers.design_speed(), least=1)
+    origin = sequel(one_of("from="), one_of(*named_in("compass")))
+    wishes = in_order(one_of(*named_in("surroundings"), "motorway"), origin, numbers.design_speed(), least=1)
     scene = sequel(one_of(SCENE), _joined([_tested_car(numbers), *_parts_of_scene(numbers)]))
     both = any_of(sequel(one_of(WISHES), wishes, replace(scene, may_be_empty=True)), scene)
     return replace(both, may_be_empty=True)

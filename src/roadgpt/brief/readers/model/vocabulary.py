@@ -6,13 +6,11 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import get_args
 
 from roadgpt.brief.amount import figure
 from roadgpt.brief.languages import pattern_of
 from roadgpt.brief.plan import SCENE
 from roadgpt.brief.readers.model.slots import LARGEST_SEEN, SLOTS, NumberSlot
-from roadgpt.language.names import Kind, Slope
 from roadgpt.language.table import MANEUVERS, PARTS, ROADS, WEATHER, named_in
 from roadgpt.language.table import NUMBERS as NUMBERS_OF_SCENES
 from roadgpt.reading import read_text
@@ -91,8 +89,8 @@ def exact_factor(factor: str) -> float:
 
 
 REFUSALS = ("!nonsense", "!contradiction", "!impossible", "!unclear")
-KINDS: tuple[str, ...] = get_args(Kind)
-SLOPES: tuple[str, ...] = get_args(Slope)
+KINDS: tuple[str, ...] = named_in("features")
+SLOPES: tuple[str, ...] = named_in("slopes")
 FIXED = ("15", "30", "45", "60", "90", "120", "135", "180")
 """Angles in degrees that words imply without naming them: a kink, a dog-leg, a right angle."""
 NUMBERS = [*map(str, range(LARGEST_SEEN + 1)), *(each for each in FIXED if int(each) > LARGEST_SEEN)]
