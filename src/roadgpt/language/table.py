@@ -173,6 +173,7 @@ class Part(NamedTuple):
     zero: str = ""
     double: str = ""
     unknown: str = ""
+    signed: bool = False
     list: bool = False
     brackets: bool = False
     token: bool = True

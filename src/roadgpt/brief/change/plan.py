@@ -49,6 +49,7 @@ from roadgpt.language.table import (
     PARTS,
     ROAD_USERS,
     ROADS,
+    SCENES,
     WEATHER,
     named_in,
 )
@@ -62,20 +63,14 @@ LISTS: Mapping[str, tuple[str, type[Frozen]]] = {
 }
 """The parts of which a scene can have several, each with the field that holds them, and their type."""
 SINGLE: Mapping[str, tuple[str, ...]] = {
-    "ego": ("speed", "lane", "turn", "person"),
-    "traffic": ("flow", "oncoming"),
-    "oncoming": ("oncoming",),
-    "land": ("land",),
-    "parked": ("parked",),
+    **{name: tuple(row["fields"]) for name, row in SCENES["single"].items()},
     **{str(name): (name,) for name in WEATHER},
     **{name: (field,) for name, (field, _) in CONDITIONS.items() if field != "flow"},
     "scene": tuple(name for name in (*Scene.model_fields, *WEATHER) if name != "weather"),
 }
 """The other parts of a scene, each with the fields that make it."""
-OF_SINGLE = {
-    "ego": "speed", "traffic": "flow", "oncoming": "oncoming", "land": "land",
-    **{str(name): name for name in WEATHER},
-}  # fmt: skip
+OF_SINGLE = {name: row["number"] for name, row in SCENES["single"].items() if "number" in row}
+OF_SINGLE |= {str(name): name for name in WEATHER}
 """The field of the one number or level that such a part has."""
 LEVELS = ("flow", "oncoming", "land")
 KEYS = {number.key: field for field, number in OF_SCENES.items()} | {str(kind): kind for kind in WEATHER}

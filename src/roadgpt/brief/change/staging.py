@@ -19,6 +19,7 @@ from roadgpt.language.table import (
     MANEUVERS,
     NUMBERS,
     ROAD_USERS,
+    SCENES,
     SURFACES,
     USUAL_SPEEDS,
     WEATHER,
@@ -36,8 +37,7 @@ USUAL: Mapping[str, Mapping[Any, float | None]] = {
 ALIKE = [{kind, row.read_as} for kind, row in ROAD_USERS.items() if row.read_as]
 HIDING = {str(kind) for kind, row in WEATHER.items() if not row.falls}
 CALLED = {
-    "ego": "start of the tested car",
-    "parked": "row of parked cars",
+    **{name: row["called"] for name, row in SCENES["single"].items() if "called" in row},
     "scene": "part",
     "slippery": "slippery place",
     **{str(name): f"{name} road" for name in SURFACES},

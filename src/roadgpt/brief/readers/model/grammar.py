@@ -21,7 +21,7 @@ from roadgpt.brief.design_speed import FASTEST, SLOWEST
 from roadgpt.brief.junctions import FORMS, LONGEST_ROUTE, ROUTE, TAKES
 from roadgpt.brief.languages import pattern_of
 from roadgpt.brief.normal import STRAIGHT
-from roadgpt.brief.plan import HALFWAY, SCENE, SIDES, TESTED_CAR
+from roadgpt.brief.plan import A_LAND, A_PATCH, HALFWAY, SCENE, SIDES, SLIPPERY, TESTED_CAR
 from roadgpt.brief.readers.model.slots import LARGEST_SEEN, NumberSlot
 from roadgpt.brief.readers.model.vocabulary import (
     FACTORS,
@@ -48,7 +48,7 @@ from roadgpt.brief.readers.model.vocabulary import (
     written,
 )
 from roadgpt.brief.refusal import CLASHING, OF_CAUSES
-from roadgpt.brief.scene import LAND_KINDS, ON_ITS_WAY, ONE_OF, Land, Lie, Role, SlipperyPlace
+from roadgpt.brief.scene import LAND_KINDS, ON_ITS_WAY, ONE_OF, Land, SlipperyPlace, Role
 from roadgpt.language.names import (
     MapJunctionKind,
     What,
@@ -68,6 +68,7 @@ from roadgpt.language.table import (
     ROADS,
     SURFACES,
     WEATHER,
+    Part,
     named_in,
 )
 
@@ -318,7 +319,7 @@ def description(numbers: Numbers) -> Symbol:
     apart = {name: sequel(one_of(f"{name}("), clause, one_of(")")) for name in ("starts", "ends")}
     apart |= {"beside": _beside(), "speed": numbers.design_speed()}
     apart["length"] = any_of(one_of(HALFWAY), numbers.keyed("len="))
-    whole = sequel(one_of("|"), in_order(*_parts("road", numbers, apart), least=1))
+    whole = sequel(one_of("|"), in_order(*_parts(PARTS["road"], numbers, apart), least=1))
     clauses = sequel(clause, list_tail(";", clause, MOST_CLAUSES - 1), replace(whole, may_be_empty=True))
     return any_of(_route(any_of(whole, clauses), numbers), _map(numbers))
 
@@ -330,11 +331,13 @@ def _beside() -> Symbol:
 
 
 def _parts(
-    thing: str, numbers: Numbers, apart: Mapping[str, Symbol], names: Iterable[str] | None = None
+    parts: Mapping[str, Part],
+    numbers: Numbers,
+    apart: Mapping[str, Symbol],
+    names: Iterable[str] | None = None,
 ) -> Iterator[Symbol]:
     """Yields the symbols for what a thing can have, by the names of fields; ``apart`` has those that are not
     only words and numbers."""
-    parts = PARTS[thing]
     for name in parts if names is None else names:
         part = parts[name]
         if name in apart:
@@ -347,7 +350,7 @@ def _parts(
         elif part.key == COUNTED:
             yield numbers.keyed(COUNTED)
         else:
-            keyed = numbers.keyed(f"{part.key}=", is_signed=(thing, name) == ("road", "climb"))
+            keyed = numbers.keyed(f"{part.key}=", is_signed=part.signed)
             zero = [one_of(part.zero)] if part.zero else []
             double = [numbers.keyed(f"{part.double}=")] if part.double else []
             yield any_of(*zero, keyed, *double)
@@ -381,7 +384,9 @@ def _junction(numbers: Numbers) -> Symbol:
     def of(form: str, names: Iterable[str]) -> Symbol:
         kinds = [kind for kind in named_in("junctions") if FORMS[kind] == form]
         takes = (take for take in named_in("takes") if any(take in TAKES[kind] for kind in kinds))
-        return sequel(one_of(*kinds), in_order(*_parts("junction", numbers, {"take": one_of(*takes)}, names)))
+        return sequel(
+            one_of(*kinds), in_order(*_parts(PARTS["junction"], numbers, {"take": one_of(*takes)}, names))
+        )
 
     return any_of(*(of(form, names) for form, names in ROADS["forms"].items()))
 
@@ -406,7 +411,7 @@ def _ways(most: int) -> Symbol:
 def _clause(numbers: Numbers) -> Symbol:
     def of(what: str, kinds: Iterable[str]) -> Symbol:
         names = [name for name, part in PARTS["clause"].items() if part.of in ("", what)]
-        return sequel(one_of(*kinds), in_order(*_parts("clause", numbers, {}, names)))
+        return sequel(one_of(*kinds), in_order(*_parts(PARTS["clause"], numbers, {}, names)))
 
     straight = [kind for kind in KINDS if kind in STRAIGHT]
     return any_of(of("straights", straight), of("turns", [kind for kind in KINDS if kind not in straight]))
@@ -440,7 +445,7 @@ def _place(numbers: Numbers, depth: int) -> Symbol:
 def _described(thing: str, numbers: Numbers, counts: Sequence[str]) -> Iterator[Symbol]:
     keys = {name: f"{part.key}=" for name, part in PARTS[thing].items() if part.key}
     apart = {name: _exactly(key, numbers) for name, key in keys.items()}
-    return _parts(thing, numbers, apart | {"count": sequel(one_of(COUNTED), one_of(*counts))})
+    return _parts(PARTS[thing], numbers, apart | {"count": sequel(one_of(COUNTED), one_of(*counts))})
 
 
 def _position(inner: Symbol, how: str) -> Symbol:
@@ -557,7 +562,6 @@ def _tested_car(numbers: Numbers) -> Symbol:
 
 def _parts_of_scene(numbers: Numbers) -> list[Symbol]:
     """Returns the symbols for the parts of a scene, in their order, but for the tested car."""
-    key = numbers.keyed
     return [
         *[_actor(numbers)] * MOST_ACTORS,
         one_of(*FLOWS),
@@ -566,7 +570,7 @@ def _parts_of_scene(numbers: Numbers) -> list[Symbol]:
         *(_air(kind, numbers) for kind in AIRS),
         one_of(*LIGHTS),
         one_of(*SURFACES),
-        *[sequel(one_of("slippery"), in_order(*map(key, ("mu=", "s=", "len="))))] * MOST_PATCHES,
+        *[sequel(one_of(SLIPPERY), in_order(*_parts(A_PATCH.parts, numbers, {})))] * MOST_PATCHES,
         *[_land(numbers)] * MOST_LANDS,
     ]
 
@@ -663,12 +667,10 @@ def _mark(is_of_action: bool = False) -> Symbol:
 
 
 def _land(numbers: Numbers) -> Symbol:
-    count, length = numbers.keyed("x"), numbers.keyed("len=")
-    structures = sequel(one_of(*STRUCTURES), in_order(count, length))
-    away = numbers.keyed("away=")
-    lies = in_order(count, one_of(*get_args(Lie)), one_of(*SIDES), length, away)
+    plain = in_order(*_parts(A_LAND.parts, numbers, {}, ("count", "length")))
     forms = [form for form in LANDS if form not in STRUCTURES]
-    return any_of(structures, sequel(one_of(*forms), lies))
+    lies = in_order(*_parts(A_LAND.parts, numbers, {}))
+    return any_of(sequel(one_of(*STRUCTURES), plain), sequel(one_of(*forms), lies))
 
 
 def any_change(numbers: Numbers) -> Symbol:
