@@ -14,6 +14,7 @@ from roadgpt.brief.change.request import Change, Target
 from roadgpt.brief.junctions import JunctionCount, MapClause
 from roadgpt.brief.model import Brief, Clause, JunctionClause
 from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.model import grammar
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF
 from roadgpt.language.__main__ import names
 from roadgpt.language.names import ActorKind, WeatherKind
@@ -142,6 +143,11 @@ def test_what_the_networks_write_has_a_token() -> None:
                 key = {f"{part.key}="} if part.key not in ("", "x") else set()
                 words = {*part.words} if not part.key else set()
                 assert key | words <= NUMBER_OF.keys(), (thing, name)
+
+
+def test_a_row_without_a_token_is_not_written() -> None:
+    assert [*grammar.one_of("straight", "sinkhole").first()] == ["straight"]
+    assert grammar.allowed((grammar.one_of("sinkhole"),)) == []
 
 
 def test_what_junctions_have_is_in_a_form_and_has_a_way_to_say_it() -> None:

@@ -94,8 +94,10 @@ def _nothing(token: str) -> Stack:
 
 
 def one_of(*tokens: str, may_be_empty: bool = False) -> Symbol:
-    """Returns the symbol for one of several tokens; without tokens, nothing can stand in its place."""
-    return Symbol(lambda: tokens, _nothing, may_be_empty)
+    """Returns the symbol for one of several tokens; without tokens, nothing can stand in its place. Names of
+    rows that have no token are left out."""
+    known = written(tokens)
+    return Symbol(lambda: known, _nothing, may_be_empty)
 
 
 def sequel(head: Symbol, *rest: Symbol, is_open: bool = False) -> Symbol:
@@ -528,8 +530,8 @@ def _new(numbers: Numbers) -> Symbol:
 
 
 ACTORS, WHATS, AIRS = written(ROAD_USERS), cast("list[What]", written(MANEUVERS)), written(WEATHER)
-LANDS, WHERES = written(LANDFORMS), cast("list[Where]", written(PLACES))
-STRUCTURES = written(form for form, row in LANDFORMS.items() if row.structure)
+WHERES = cast("list[Where]", written(PLACES))
+STRUCTURES = [form for form, row in LANDFORMS.items() if row.structure]
 MOST_ACTORS, MOST_PATCHES, MOST_LANDS, MOST_ACTIONS = 6, 2, 5, 4
 MOST_SAME = tuple(map(str, range(1, 10)))
 ONE_SIDE = one_of(*SIDES, "opposite")
@@ -668,7 +670,7 @@ def _mark(is_of_action: bool = False) -> Symbol:
 
 def _land(numbers: Numbers) -> Symbol:
     plain = in_order(*_parts(A_LAND.parts, numbers, {}, ("count", "length")))
-    forms = [form for form in LANDS if form not in STRUCTURES]
+    forms = [form for form in LANDFORMS if form not in STRUCTURES]
     lies = in_order(*_parts(A_LAND.parts, numbers, {}))
     return any_of(sequel(one_of(*STRUCTURES), plain), sequel(one_of(*forms), lies))
 
@@ -692,7 +694,7 @@ def _scene_change(numbers: Numbers) -> Symbol:
     levels = one_of(*FLOWS, "none")
     things: dict[tuple[str, ...], tuple[Sequence[Symbol], Symbol]] = {
         (*ACTORS, "actor"): ((*WHICH, one_of(*WHERES), ONE_SIDE), actor),
-        (*LANDS, "landscape"): ((*WHICH, one_of(*SIDES)), any_of(*_of_thing(Land, numbers))),
+        (*LANDFORMS, "landscape"): ((*WHICH, one_of(*SIDES)), any_of(*_of_thing(Land, numbers))),
         ("slippery",): (WHICH, any_of(*_of_thing(SlipperyPlace, numbers))),
         (TESTED_CAR,): ((), any_of(sequel(one_of("v="), _value("v=", numbers)), one_of("remove"))),
         ("traffic", "oncoming"): ((), any_of(one_of("remove"), levels, *MORE_OR_LESS)),
