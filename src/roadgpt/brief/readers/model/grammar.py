@@ -48,7 +48,7 @@ from roadgpt.brief.readers.model.vocabulary import (
     written,
 )
 from roadgpt.brief.refusal import CLASHING, OF_CAUSES
-from roadgpt.brief.scene import LAND_KINDS, ON_ITS_WAY, ONE_OF, Land, SlipperyPlace, Role
+from roadgpt.brief.scene import LAND_KINDS, ON_ITS_WAY, ONE_OF, Land, Role, SlipperyPlace
 from roadgpt.language.names import (
     MapJunctionKind,
     What,
