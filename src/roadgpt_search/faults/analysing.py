@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from roadgpt import plugins
 from roadgpt.campaign.executors.processes import unordered_map
 from roadgpt.campaign.folder_record import open_record, setups_of
 from roadgpt.campaign.model import NumberedTest
@@ -21,7 +22,6 @@ from roadgpt.plural import plural
 from roadgpt.run.folder import is_run
 from roadgpt.run.model import permissions
 from roadgpt.run.versions import versions_now
-from roadgpt_search.command import AT_END, REPEAT, faults
 from roadgpt_search.faults.fault import Faults, faults_in
 from roadgpt_search.faults.fault_log import (
     FAILURES,
@@ -62,9 +62,11 @@ def told(status: Status) -> Remarks:
 
 def at_end(folder: Path, given: Mapping[str, Any]) -> None:
     """Analyses the failures of a folder whose tests have ended, if an option asks for it."""
-    if any(given[option.field] for option in AT_END):
+    command = plugins.find("commands", "faults")
+    if any(given[option.field] for option in command.at_end):
+        usual = next(option.default for option in command.params if option.name == "repeat")
         here = min(given["workers"], os.cpu_count() or 1)  # the campaign's workers may be on other machines
-        asked = given["repeat"] or REPEAT, given["minimise"], here, given["quiet"], given["groups"]
+        asked = given["repeat"] or usual, given["minimise"], here, given["quiet"], given["groups"]
         analyse_failures(folder, *asked, is_apart=given["as_json"])
 
 
@@ -86,7 +88,8 @@ def analyse_failures(
     with open_record(place) as record:
         asked = ((cell.request, cell.generator) for cell in record.cells())
         record.refuse_changed(versions_now(asked))  # the user is asked for permission here, not in workers
-    go_on = command_line("faults", place, *permissions(setups_of(place)), *typed_words(faults))
+    typed = typed_words(plugins.find("commands", "faults"))
+    go_on = command_line("faults", place, *permissions(setups_of(place)), *typed)
     with resumable(f"finished work is kept; continue with: {go_on}"):
         found = found if groups else _tested(place, found, workers, quiet, say)
         say(f"{found.sentence}; analysing a typical failure of each", is_news=True)
