@@ -72,6 +72,7 @@ def _page(record: Record, status: Status, command: str) -> Page:
     sources = [source for source in sources if source.total]
     said = [group for group in groups if any(road.kept for road in group.roads)]
     sections = [
+        *([overview(groups)] if any(len(group.roads) > 1 for group in groups) else []),
         outcomes(record, status, is_paired),
         *failures(record, status, drives_on),
         *([validity(groups, sources)] if sources else []),
@@ -86,7 +87,6 @@ def _page(record: Record, status: Status, command: str) -> Page:
     if is_paired:
         chapter = same_roads(record)
         sections, summary = [chapter.section, *sections], [*chapter.sentences, *summary]
-    sections[:0] = [overview(groups)] * any(len(group.roads) > 1 for group in groups)
     title, lead = titles(status, first)
     return Page(title, summary, sections, card_of_tests(command, record, status, groups), lead)
 
