@@ -12,8 +12,8 @@ from scipy.spatial import KDTree
 from shapely import LineString, Polygon, get_coordinates
 from shapely.affinity import rotate, translate
 
+from boxed import corners
 from roadgpt.run import Run
-from roadgpt.traffic.actor import corners
 
 X, Y, _, HEADING, SPEED = range(5)
 REFERENCE = {"adult": 0.06, "child": 0.0405, "bicycle": -0.015}

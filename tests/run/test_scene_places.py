@@ -11,11 +11,11 @@ from roadgpt.network.line import driven_line
 from roadgpt.road import World
 from roadgpt.road.road import START
 from roadgpt.run import Setup, perform
+from roadgpt.traffic import begin
 from roadgpt.traffic.actor import STEP
 from roadgpt.traffic.following import GREEN, RED
 from roadgpt.traffic.lights import lights_of
 from roadgpt.traffic.rehearsal import rehearsed
-from roadgpt.traffic.traffic import begin
 
 SETUP = Setup(reader="plan", drives=False)
 

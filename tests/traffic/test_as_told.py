@@ -5,11 +5,12 @@ import numpy as np
 import pytest
 from shapely import Polygon
 
+from boxed import corners
 from roadgpt.errors import BriefError
 from roadgpt.road.road import START
 from roadgpt.run import Run, Setup, perform
 from roadgpt.traffic import STEP, Traffic
-from roadgpt.traffic.actor import SIZES, corners
+from roadgpt.traffic.actor import SIZES
 from roadgpt.traffic.rehearsal import rehearsed
 
 

@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 import shapely
 
+from boxed import corners
 from roadgpt import traffic
 from roadgpt.network import legs_of, network_of
 from roadgpt.network.lanes import lanes_of
 from roadgpt.run import Setup, perform
 from roadgpt.traffic import Size, Stage
-from roadgpt.traffic.actor import HEADING, SPEED, STEP, X, Y, corners
+from roadgpt.traffic.actor import HEADING, SPEED, STEP, X, Y
 from roadgpt.traffic.idm import DENSITY, IdmMover
 from roadgpt.traffic.lane_map import lane_map, touched
 from roadgpt.traffic.lights import GREEN, RED, Lights

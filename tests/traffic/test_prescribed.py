@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from shapely import Polygon
 
+from boxed import corners
 from measured import Measured
 from prescribed import PRESCRIBED, Row
 from roadgpt.brief.plan import read_plan
@@ -16,7 +17,6 @@ from roadgpt.road import World
 from roadgpt.road.road import GOAL, START
 from roadgpt.run import Run, Setup, perform
 from roadgpt.traffic import STEP, Actor, TestedCar, begin
-from roadgpt.traffic.actor import corners
 from staged import BOX
 
 TestedCar.__test__ = False

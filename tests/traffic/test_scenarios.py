@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from shapely import LineString, Point, Polygon
 
+from boxed import corners
 from outside_judge import SHARED
 from roadgpt.brief.beside import friction_of
 from roadgpt.brief.model import Brief, mirrored
@@ -25,7 +26,7 @@ from roadgpt.errors import UsageError
 from roadgpt.road import World
 from roadgpt.run import Run, Setup, perform
 from roadgpt.run.exporting import export
-from roadgpt.traffic.actor import SIZES, corners
+from roadgpt.traffic.actor import SIZES
 
 HERE = Path(__file__).parent
 CATALOGUE: list[dict[str, Any]] = json.loads((HERE / "catalogue.json").read_text())["scenarios"]

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from shapely import LineString, Point, Polygon
 
+from boxed import corners
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, Road, Segment, World, build
 from roadgpt.run import Setup, perform
 from roadgpt.traffic import STEP, Actor, TestedCar, begin
-from roadgpt.traffic.actor import Size, corners
+from roadgpt.traffic.actor import Size
 from roadgpt.traffic.rehearsal import rehearsed
 
 TestedCar.__test__ = False
