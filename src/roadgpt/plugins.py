@@ -8,7 +8,8 @@ Plug-ins are registered as entry points of the group ``roadgpt.<kind>``. The bui
 mechanism as those of users."""
 
 from functools import cache
-from importlib.metadata import EntryPoint, entry_points
+from importlib import metadata
+from importlib.metadata import EntryPoint, EntryPoints
 from typing import Any
 
 from roadgpt.errors import PartError
@@ -17,6 +18,16 @@ KINDS = (
     "providers", "readers", "designers", "rules", "exporters", "simulators", "drivers",
     "generators", "columns", "executors",
 )  # fmt: skip
+
+
+@cache
+def _every() -> EntryPoints:
+    return metadata.entry_points()  # to read those of one group alone takes as long
+
+
+def entry_points(group: str) -> EntryPoints:
+    """Returns the entry points of a group, such as 'roadgpt.rules'."""
+    return _every().select(group=group)
 
 
 @cache

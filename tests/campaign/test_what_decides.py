@@ -244,6 +244,7 @@ def rules(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 def fresh() -> None:
     """Forgets what was installed."""
     plugins._registered.cache_clear()
+    plugins._every.cache_clear()
     versions._source.cache_clear()
     sys.modules.pop("acme_rules", None)
 

@@ -1,7 +1,6 @@
 """Commands that make or drive roads: ``roadgpt run``, ``read`` and ``drive``."""
 
 import json
-import secrets
 import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -120,6 +119,8 @@ def carry_out(
     if seed is None and out is not None:
         seed = seed_in(out)
     if seed is None:
+        import secrets
+
         seed = secrets.randbelow(SEEDS)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
         work = campaign(brief, roads, seed, world, setup, out, draw, meter, again, workers)
