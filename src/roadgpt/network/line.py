@@ -126,17 +126,22 @@ class Line:
 
         return cKDTree(self.points[:, :2])
 
+    @cached_property
+    def _frames(self) -> Array:
+        """x, y, heading, station and curvature of each point; the line is straight before and behind it."""
+        bends = np.r_[0.0, self.curvature[1:-1], 0.0]
+        return np.column_stack([self.points[:, [0, 1, 3]], self.stations, bends])
+
     def locate(self, x: Array | float, y: Array | float) -> tuple[Array, Array]:
         """Returns the stations and offsets of places, as seen from the nearest points of the line and
         corrected for its curvature there; NaN of NaN."""
-        near = np.asarray(self._tree.query(np.nan_to_num(np.stack([x, y], axis=-1)))[1])
-        heading, last = self.points[near, 3], len(self.points) - 1
-        dx, dy = x - self.points[near, 0], y - self.points[near, 1]
-        c, s = np.cos(heading), np.sin(heading)
-        ahead, t = dx * c + dy * s, dy * c - dx * s
-        bend = np.where((near == 0) | (near == last), 0.0, self.curvature[near])
+        places = np.stack([x, y], axis=-1)
+        near = self._tree.query(np.where(np.isnan(places), 0.0, places))[1]
+        x0, y0, heading, s, bend = self._frames[near].T
+        c, n, dx, dy = np.cos(heading), np.sin(heading), x - x0, y - y0
+        ahead, t = dx * c + dy * n, dy * c - dx * n
         stretch = np.maximum(1 - bend * t, LEAST_STRETCH)
-        return self.stations[near] + ahead / stretch, t - bend * ahead**2 / (2 * stretch)
+        return s + ahead / stretch, t - bend * ahead**2 / (2 * stretch)
 
     def boxes(self, states: Array, size: Array, slip: Array | float = 0.0) -> Boxes:
         """Returns boxes from their states (n, 5): x, y, z, heading and speed. ``slip`` is that of their
