@@ -9,7 +9,7 @@ mechanism as those of users."""
 
 from functools import cache
 from importlib import metadata
-from importlib.metadata import EntryPoint, EntryPoints
+from importlib.metadata import EntryPoint
 from typing import Any
 
 from roadgpt.errors import PartError
@@ -21,11 +21,11 @@ KINDS = (
 
 
 @cache
-def _every() -> EntryPoints:
+def _every() -> Any:
     return metadata.entry_points()  # to read those of one group alone takes as long
 
 
-def entry_points(group: str) -> EntryPoints:
+def entry_points(group: str) -> Any:
     """Returns the entry points of a group, such as 'roadgpt.rules'."""
     return _every().select(group=group)
 
