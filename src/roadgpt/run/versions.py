@@ -95,7 +95,8 @@ def _version(name: str) -> str:
 def _plugin(kind: str, name: str, module: str) -> str:
     found = find_spec(module)
     place = Path(found.origin if found and found.origin else module)
-    return f"{plugins.origin(kind, name)} ({_source(place.parent if place.stem == '__init__' else place)})"
+    named = plugins.origin(kind, name).replace("roadgpt ", f"{module} ", 1)  # our annexes, each by its name
+    return f"{named} ({_source(place.parent if place.stem == '__init__' else place)})"
 
 
 def still(recorded: Mapping[str, str], now: Mapping[str, str], driver: str, folder: object) -> Versions:
