@@ -222,7 +222,9 @@ def test_another_roadgpt_is_a_change(here: Path, monkeypatch: pytest.MonkeyPatch
     monkeypatch.undo()
     monkeypatch.chdir(here)
     monkeypatch.setattr(versions, "_source", lambda place: "0" * 64)
-    both = r"roadgpt source \(was [0-9a-f]{16}, is 0{64}\), plug-ins \(was roadgpt .*, is roadgpt .*\)"
+    both = (
+        r"roadgpt source \(was [0-9a-f]{16}, is 0{64}\), plug-ins \(was roadgpt_sbft .*, is roadgpt_sbft .*\)"
+    )
     refused(both, "run", "resume half", "resume runs")
 
 
