@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 Goal = Literal["failures", "coverage", "hardest", "boundary"]
 """The goal of a search; a cell without a goal makes the requested number of roads and does not search."""
 FEWEST = 5  # passed tests; if there are fewer, it is no surprise that none failed
-NO_FAILURE = "No road failed: `roadgpt campaign --goal failures` searches for one."
+NO_FAILURE = "No road failed: 'roadgpt campaign --goal failures' searches for one."
 GOALS: tuple[Goal, ...] = get_args(Goal)
 
 WITHOUT_GOAL, WITH_GOAL = "words", "quality_diversity"

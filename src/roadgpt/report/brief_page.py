@@ -78,12 +78,13 @@ def _worst(record: Record) -> Section:
     has_margin = its.margin is not None and its.cause != "collision"
     has_margin &= its.outcome == "PASS" or run.request.setup.keep_driving  # else the drive ended at the edge
     margin = f"Margin: {its.margin:.2f} m." if has_margin else ""
-    numbers = ", ".join(f"{each.key} {each.value:.4g}" for each in told_of(its.features)[:TOLD])
+    told_numbers = told_of(its.features)[:TOLD]
+    numbers = ", ".join(each.text or f"{each.key} {each.value:.4g}" for each in told_numbers)
     test = named(record.folder, worst[0])
     drive = command_line("drive", "--again", test, *permissions([run.request.setup], replays=True))
     scenario = record.cell(worst[0].cell).scenario_of(its.proposal.origin)
     told = f"Test {worst[0]}{f' ({scenario})' * bool(scenario)}, {its.outcome}: {its.description}."
-    said = " ".join(filter(None, (told, cause, margin, numbers)))
+    said = " ".join(filter(None, (told, cause, margin, numbers and f"{numbers[:1].upper()}{numbers[1:]}.")))
     wide, high = figure.get_size_inches().tolist()
     picture = embedded_png(encoded(figure, "png"), wide, high, told)
     view = ShellCommand(command_line("view", test))
