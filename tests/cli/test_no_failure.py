@@ -1,6 +1,7 @@
 """Where no road failed, one sentence says what searches for failures; it can be typed."""
 
 import shlex
+from html import unescape
 from pathlib import Path
 
 import pytest
@@ -25,6 +26,6 @@ def test_summaries_and_reports_say_it_once(tmp_path: Path, verb: str) -> None:
     if verb == "campaign":
         assert roadgpt("show", out).stdout.count(NO_FAILURE) == 1
     roadgpt("report", out)
-    assert (out / "report.html").read_text(encoding="utf-8").count(NO_FAILURE) == 1
-    search = shlex.split(NO_FAILURE.split("`")[1])[1:]
+    assert unescape((out / "report.html").read_text(encoding="utf-8")).count(NO_FAILURE) == 1
+    search = shlex.split(NO_FAILURE.split("'")[1])[1:]
     roadgpt(*search, *WORDS, "-n", 1, "--out", tmp_path / "search", "--quiet")
