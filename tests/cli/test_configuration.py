@@ -14,7 +14,7 @@ from rows import rows
 
 OF_A_CALL = {
     "roads", "seed", "out", "plan", "no_drive", "no_plot", "junit", "json", "quiet", "verbose", "help_all",
-    "route", "fail_on", "baseline", "margin_loss", "again",
+    "route", "fail_on", "baseline", "margin_loss", "again", "workers",
 }  # fmt: skip
 """Options that are given with each call, and that no file sets."""
 OTHERWISE = {

@@ -30,7 +30,7 @@ def test_a_driver_of_ones_own_goes_through_every_command_that_is_printed(
     here.mkdir()
     (here / "mine.py").write_text(STRAIGHT_ON)
     monkeypatch.chdir(here)
-    honest, before = single_test.perform, len(hints.printed)
+    honest, before = single_test.drafted, len(hints.printed)
 
     def stopped(words, seed, world, setup, index, *rest):  # type: ignore[no-untyped-def]
         if index == 2:
@@ -41,7 +41,7 @@ def test_a_driver_of_ones_own_goes_through_every_command_that_is_printed(
         return CliRunner().invoke(app, words, prog_name="roadgpt").exit_code
 
     with monkeypatch.context() as patch:
-        patch.setattr(single_test, "perform", stopped)
+        patch.setattr(single_test, "drafted", stopped)
         limits = ("--fail-on", "error,5%", "--junit", "tests of it.xml")
         assert invoke("run", *WORDS, "-n", "2", "--no-plot", "--out", "r", *limits) == 130
         assert invoke("campaign", *WORDS, "-n", "2", "--out", "c", *limits) == 130

@@ -93,7 +93,7 @@ def test_control_c_stops_the_roads_and_not_the_conversation(monkeypatch: pytest.
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patched:
-        patched.setattr(single_test, "perform", stopped)
+        patched.setattr(single_test, "drafted", stopped)
         result = say("a road", "3", "exit")
     assert result.exit_code == 0
     assert "roadgpt: stopped; 0 of 3 roads are finished" in result.stderr
