@@ -226,12 +226,12 @@ def _too_tight(road: Road, nodes: Array, limit: float) -> Finding | None:
 def _touching(
     network: Network, road: Road, rows: Sequence[tuple[Array, Array]], world: World
 ) -> Finding | None:
-    if all(keeps_clear(*row) for row in rows):
-        return None
-    from roadgpt.check.rules.no_overlap import overlap_with_itself  # compiled code, which few roads need
+    from roadgpt.check.rules.no_overlap import overlap_with_itself
 
-    found, nearest, gap = overlap_with_itself(network.roads[0], world, SPLINE_REACH)
+    found, nearest, gap = overlap_with_itself(network.roads[0], world)
     if found is not None or gap >= SPLINE_REACH:  # far apart, or, in land, one above the other
+        return None
+    if all(keeps_clear(*row) for row in rows):
         return None
     samples = road.sample()
     s, x, y = (float(v[nearest]) for v in (samples.s, samples.x, samples.y))

@@ -12,6 +12,8 @@ Different roads are compared as polygons; an overlap outside junctions would be 
 describes. Connecting roads of one junction may overlap; roads of one roundabout are compared by the rule
 ``ring_too_small``. Findings about networks are called ``conflicting_overlap``."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from roadgpt.brief.model import Brief
@@ -20,6 +22,7 @@ from roadgpt.check.ribbon import bulge, is_convex, near_pairs, quads_of, sides
 from roadgpt.network import Network, NetworkRoad
 from roadgpt.road import Road, World
 
+NEAR = 1.5  # m between two parts, up to which their distance is measured
 SURELY = 0.9  # of the tightest radius: between the samples, a bend may be a little tighter
 
 
@@ -33,13 +36,12 @@ def inspect(network: Network, route: Road | None, brief: Brief | None, world: Wo
     return () if found is None else (_finding(road, *found),)
 
 
-def overlap_with_itself(
-    member: NetworkRoad, world: World, reach: float = 0.0
-) -> tuple[tuple[int, str] | None, int, float]:
+@lru_cache(maxsize=4)  # rules of other packages ask the same
+def overlap_with_itself(member: NetworkRoad, world: World) -> tuple[tuple[int, str] | None, int, float]:
     """Returns three values: the index of the first sample at which the road folds or overlaps an earlier
     part, and what is wrong there (None: nothing is wrong); the index of the sample that is nearest to an
     earlier part (0 if the road folds, or no parts are close); and the metres between these two parts. The
-    metres are 0 if the road folds or overlaps itself, and may be infinite above ``reach``."""
+    metres are 0 if the road folds or overlaps itself, and may be infinite above NEAR."""
     import shapely
 
     samples = member.road.sample()
@@ -56,7 +58,7 @@ def overlap_with_itself(
         radius = narrowest  # as the surface does not fold, no bend is tighter
     half_turn = np.pi * radius / max(float(samples.s[1] - samples.s[0]), 1e-9)
     shapes, nearest = shapely.polygons(quads), (np.inf, 0)
-    for i, j in near_pairs(quads, reach=max(slack, reach), apart=max(2, int(min(half_turn, len(quads))))):
+    for i, j in near_pairs(quads, reach=max(slack, NEAR), apart=max(2, int(min(half_turn, len(quads))))):
         if world.has_ground:
             from roadgpt.network.landscape import CLEARANCE
 
