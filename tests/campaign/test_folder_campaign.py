@@ -135,7 +135,7 @@ def test_without_the_record_a_folder_is_shown_but_not_continued(
     (tmp_path / "campaign.sqlite").unlink()
     before = contents(tmp_path)
     for is_again in (False, True):
-        with pytest.raises(UsageError, match=r"not made by roadgpt run; name another folder"):
+        with pytest.raises(UsageError, match=r"has no campaign\.sqlite, .* make them anew in another folder"):
             campaign(BRIEF, 3, 7, setup=NO_DRIVE, out=tmp_path, again=is_again)
     assert contents(tmp_path) == before
     with open_record(tmp_path) as record:

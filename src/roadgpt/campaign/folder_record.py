@@ -28,6 +28,14 @@ def has_tests(folder: Path) -> bool:
     return is_store(folder) or ((folder / RUNS).is_dir() and not is_run(folder))
 
 
+def cannot_go_on(folder: Path) -> UsageError:
+    """Returns the error for files of runs without a store."""
+    return UsageError(
+        f"{folder} has no {STORE}, the record of its tests, so they are shown but not continued; make them "
+        "anew in another folder"
+    )
+
+
 def open_record(folder: Path) -> Record:
     """Opens the tests of a campaign, of a folder of runs, or of a single run."""
     if is_store(folder):
@@ -112,7 +120,6 @@ class FolderRecord(Record):
 
     def run(self, cell: str, number: int, has_drive: bool = True) -> Run:
         """Returns the Run of a test, always with its drive; raises UsageError if it cannot be read."""
-        del has_drive
         self.check_ended(cell, number)
         return read_run(self._places[number])
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
 from roadgpt.campaign.csv_tables import CELLS, RESULTS, write_tables
-from roadgpt.campaign.folder_record import has_tests, is_store
+from roadgpt.campaign.folder_record import cannot_go_on, has_tests, is_store
 from roadgpt.campaign.given import FOLDER as ROADS
 from roadgpt.campaign.given import changes, content_of, given_roads, write_roads
 from roadgpt.campaign.plan import Plan
@@ -174,14 +174,6 @@ def work(
             with refusals(folder, store):
                 write_tables(store, folder)
                 store.finish()
-
-
-def cannot_go_on(folder: Path) -> UsageError:
-    """Returns the error for files of runs without a store."""
-    return UsageError(
-        f"{folder} has no {STORE}, the record of its tests, so they are shown but not continued; make them "
-        "anew in another folder"
-    )
 
 
 def _make_runs(

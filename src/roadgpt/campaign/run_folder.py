@@ -15,7 +15,7 @@ from roadgpt import plugins
 from roadgpt.brief.model import Brief
 from roadgpt.campaign.columns import features_in
 from roadgpt.campaign.csv_tables import write_tables
-from roadgpt.campaign.folder_record import is_store, open_record
+from roadgpt.campaign.folder_record import cannot_go_on, has_tests, is_store, open_record
 from roadgpt.campaign.model import PATIENCE, WITHOUT_GOAL, Cell, CellBudget
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import STORE, Record, Store
@@ -213,9 +213,8 @@ class Campaign:
         seed_of(request.seed, 1)  # a wrong seed raises an error now
         versions = versions_now([(request, WITHOUT_GOAL)])
         if out is None:
-            made = missing(HOME)
-            path = new_folder(request.words, request.seed)
-            made = (path, *made)
+            above, path = missing(HOME), new_folder(request.words, request.seed)
+            made = (path, *above)
         else:
             path = Path(out)
             with explained(UsageError, f"cannot use {path}", "name another folder"):
@@ -223,6 +222,8 @@ class Campaign:
                 path.mkdir(parents=True, exist_ok=True)
                 if again:
                     set_aside(path, STORE)
+                if not is_store(path) and has_tests(path):
+                    raise cannot_go_on(path)
                 if not is_store(path) and not is_new(path, STORE):
                     raise UsageError(
                         f"{path} is not empty and was not made by roadgpt run; name another folder"

@@ -327,9 +327,8 @@ def resume(folder: Path, driver: tuple[str, ...], base_url: str | None, axes: "S
 
     \b
     roadgpt resume roadgpt-runs/an-uphill-road-with-3-turns-7 -j 2"""
-    from roadgpt.campaign.folder_record import has_tests, is_store, open_record
+    from roadgpt.campaign.folder_record import cannot_go_on, has_tests, is_store, open_record
     from roadgpt.campaign.given import changes, given_roads
-    from roadgpt.campaign.lifecycle import cannot_go_on
     from roadgpt.chat.config import trust_server
     from roadgpt.drive.loading import check_named_drivers
     from roadgpt.reading import digest
