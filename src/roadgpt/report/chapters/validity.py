@@ -61,7 +61,7 @@ def outside_sentences(found: Sequence[Passed], world: World) -> list[str]:
     if not every:
         return []
     if inside.tests == every and not inside.share:
-        return [f"On all {every:,} roads that it passed, the car was never outside its lane."]
+        return [f"The car was never outside its lane on the {plural(every, 'road')} that it passed."]
     beyond = f", {max(each.beyond for each in found):.2f} m beyond the marking"
     tolerance = f"the tolerance of {percent(world.limits.oob_tolerance)}"
     within = "without a lane departure" if world.limits.lane_departure else f"within {tolerance}"
