@@ -23,6 +23,7 @@ ANNEXES = (
     "roadgpt_beamng",
     "roadgpt_edit",
     "roadgpt_film",
+    "roadgpt_formats",
     "roadgpt_gym",
     "roadgpt_sbft",
     "roadgpt_search",

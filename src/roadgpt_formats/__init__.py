@@ -1,0 +1,1 @@
+"""Road files of other tools, read and written."""
