@@ -19,7 +19,7 @@ import numpy as np
 from roadgpt.brief import read
 from roadgpt.design import draft
 from roadgpt.export import Poses, save
-from roadgpt.export.georeference import LATITUDE, LONGITUDE
+from roadgpt.export.exporters.opendrive import LATITUDE, LONGITUDE
 from roadgpt.road import Road, World, build, in_short_segments
 
 WORDS = (

@@ -1,8 +1,8 @@
 """Finds plug-ins by name: providers, readers, designers, rules, exporters, simulators, and so on.
 
 Of the kinds ``commands``, ``checks`` (of ``roadgpt doctor``), ``reports`` (of folders of other packages),
-``chapters`` (of reports), ``analyses`` (of tests), ``tables`` (of folders of runs) and ``settings`` (of
-simulators), there may be none.
+``chapters`` (of reports), ``analyses`` (of tests), ``tables`` (of folders of runs), ``settings`` (of
+simulators) and ``recordings`` (of others on the road), there may be none.
 
 Plug-ins are registered as entry points of the group ``roadgpt.<kind>``. The built-in plug-ins use the same
 mechanism as those of users."""

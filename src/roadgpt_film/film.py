@@ -22,7 +22,7 @@ from PIL import Image, ImageDraw, ImageFont
 from scipy.signal import lfilter
 
 from roadgpt.errors import RoadGPTError, UsageError, explained, to_install
-from roadgpt.export.ego import CAR, calm_speed, goal_of, start_of
+from roadgpt.export.ego import CAR, goal_of, start_of
 from roadgpt.geometry.curve import Array
 from roadgpt.network import refuse_without_route
 from roadgpt.report import canvas
@@ -32,6 +32,7 @@ from roadgpt.scene import Camera, Mount, Pose, Scenery
 from roadgpt.traffic.actor import bodies
 from roadgpt.verdict import percent, severity
 from roadgpt.verdict.oracle import margins
+from roadgpt_formats.calm_driver import calm_speed
 
 COLUMNS = ("x", "y", "z", "heading", "pitch", "roll", "steer", "speed", "brake")
 STEP = 0.02  # s, time step of a trip along a road that was not driven

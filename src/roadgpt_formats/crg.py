@@ -30,6 +30,7 @@ class Crg:
     name = "crg"
     suffix = ".crg"
     lacks = ("the land around",)
+    draws_edges = False
 
     def doubts(self, road: Road, world: World) -> tuple[str, ...]:
         """Says where the surface ends before the shoulders do."""

@@ -11,9 +11,9 @@ import shapely
 from roadgpt import plugins
 from roadgpt.errors import ExportError
 from roadgpt.export import exporter_of, save
-from roadgpt.export.georeference import degrees
 from roadgpt.network import Route, build_route
 from roadgpt.road import World, read_design
+from roadgpt_formats.georeference import degrees
 
 HOLD = {
     "gltf",

@@ -19,7 +19,7 @@ from exported import contents, read_gltf
 from profiled import smooth
 from roadgpt import plugins
 from roadgpt.export import save
-from roadgpt.export.georeference import LATITUDE, LONGITUDE
+from roadgpt.export.exporters.opendrive import LATITUDE, LONGITUDE
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.road import CrossSection, Profile, Road, World
 from roadgpt.road.profile import LaneStrip

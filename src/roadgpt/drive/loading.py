@@ -25,7 +25,7 @@ from roadgpt import plugins
 from roadgpt.errors import UsageError
 from roadgpt.provenance import CODE, USER
 
-RECORDINGS = (".csv", ".xosc")  # suffixes of files with recorded tracks
+RECORDINGS = (".csv", *plugins.names("recordings"))  # suffixes of files with recorded tracks
 WRITTEN = "written by the driver"
 """Stands for the content of a file that the driver also writes, so that it differs at any time."""
 WITH_SETTINGS = re.compile(r"(.+\.py(?::\w+)?|[^:]+):(\w+=.*)", re.DOTALL)

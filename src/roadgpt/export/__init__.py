@@ -8,6 +8,7 @@ Each format is a plug-in, for example:
         holds_junctions = True                                 # optional: the format can hold networks
         needs_route = True                                     # optional: a map without a route is refused
         holds_others = True                                    # optional: it holds the others on the road
+        draws_edges = False                                    # optional: it holds no edges of lanes
         def save(self, road, path, world, poses=None) -> None
 
 An exporter writes ``path``, and may write further files with the same stem to the same folder. The same
@@ -32,7 +33,6 @@ from roadgpt.road.edges import fold
 __all__ = ["Exporter", "Poses", "Trajectories", "doubts", "exporter_of", "save"]
 
 OTHERS = "others on the road"
-EDGELESS = ("csv", "sbft", "crg")  # formats that draw no edges of lanes
 
 
 @runtime_checkable
@@ -43,7 +43,8 @@ class Exporter(Protocol):
     (``roadgpt.network.Route``). An exporter without this attribute gets single roads only. An exporter whose
     attribute ``needs_route`` is also True gets no maps without a route (``road.has_way`` is False). An
     exporter whose attribute ``holds_others`` is True has one more argument, ``placed``: the others on a road
-    where they begin, if nobody has driven it. Of all others it is said that they leave them out."""
+    where they begin, if nobody has driven it. Of all others it is said that they leave them out. For an
+    exporter whose attribute ``draws_edges`` is False, folds of the edges of lanes do not matter."""
 
     name: str
     """Name under which the format is registered as a plug-in."""
@@ -131,7 +132,8 @@ def doubts(road: Road, formats: Sequence[str], world: World, poses: Poses | None
     is_only = only_road(road, world) is not None
     roads = {"" if is_only else f"road {each.id}: ": each for each in network_of(road, world).roads}
     folds = {name: fold(each.road, each.profile) for name, each in roads.items()}
-    shown = ", ".join(name for name in formats if name not in EDGELESS)
+    parts = [*map(exporter_of, formats)]
+    shown = ", ".join(part.name for part in parts if getattr(part, "draws_edges", True))
     said = [f"{shown}: {name}{each}" for name, each in folds.items() if each and shown]
     widths = [lane.width for lane in (*profile.left, *profile.right)]
     there = {
@@ -141,7 +143,7 @@ def doubts(road: Road, formats: Sequence[str], world: World, poses: Poses | None
         "the land around": world.has_ground,
         OTHERS: world.scene.has_others or (poses is not None and poses.others is not None),
     }
-    for part in map(exporter_of, formats):
+    for part in parts:
         lacks = (*getattr(part, "lacks", ()), *(() if getattr(part, "holds_others", False) else (OTHERS,)))
         said += [f"{part.name}: {what} left out" for what in lacks if there[what]]
         said += [f"{part.name}: {each}" for each in getattr(part, "doubts", lambda *_: ())(road, world)]
@@ -151,8 +153,8 @@ def doubts(road: Road, formats: Sequence[str], world: World, poses: Poses | None
 def _check_holds(road: Road, part: Exporter, world: World) -> None:
     if not getattr(part, "holds_junctions", False) and only_road(road, world) is None:
         # nor can such a format hold what a Route without junctions has: traffic on the left, merged lanes
-        reads = ", and netconvert reads it" if part.name == "sumo" else ""
-        raise ExportError(f"{part.name} cannot hold junctions yet; opendrive can{reads}")
+        instead = getattr(part, "for_junctions", "opendrive can")
+        raise ExportError(f"{part.name} cannot hold junctions yet; {instead}")
     if not road.has_way and getattr(part, "needs_route", False):
         raise ExportError(
             f'{part.name} holds a way to drive, and this map has no route; give it one, such as "route": '

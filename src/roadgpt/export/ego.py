@@ -1,10 +1,10 @@
-"""Defines the ego vehicle of exported files: its dimensions, start, planned speeds, and poses during a drive.
+"""Defines the ego vehicle of exported files: its dimensions, start and goal, and poses during a drive.
 
 The dimensions are those of BeamNG's ETK 800, a mid-size saloon, which the built-in simulator also uses."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,14 +13,8 @@ from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
 from roadgpt.language.names import ActorKind
 from roadgpt.network import RoadEnd
-from roadgpt.road import Road, World
+from roadgpt.road import Road
 from roadgpt.road.road import GOAL, START
-from roadgpt.road.speed_profile import GRAVITY, DrivingLimits, lane_speed
-
-COMFORT = 3.0  # m/s^2, lateral, ISO 11270
-GRIP = 0.5  # share of the friction that a calm driver uses
-PULL = 2.0  # m/s^2, of driving off and braking: the acceleration that ISO 15622 allows cruise control
-STEP = 0.5  # m between the places for which a speed is planned
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,46 +119,6 @@ def start_of(road: Road) -> float:
 def goal_of(road: Road) -> float:
     """Returns the station in metres at which a drive ends. It is always greater than ``start_of``."""
     return max(road.length - GOAL, (start_of(road) + road.length) / 2)
-
-
-class SpeedProfile(NamedTuple):
-    """Planned or driven speeds, as arrays of equal length."""
-
-    speed: Array  # speeds in m/s
-    time: Array  # times in seconds since the start; the acceleration is constant between stations
-
-
-def calm_speeds(road: Road, world: World, s: Array) -> Array:
-    """Returns the speeds in m/s of a calm driver at stations ``s``.
-
-    The speed is the speed limit, or lower where the lateral acceleration in a bend would be uncomfortable."""
-    bend = np.maximum(np.abs(road.curvature(s)), 1e-9)
-    sideways = min(COMFORT, GRIP * world.site.friction * GRAVITY)
-    return np.asarray(np.minimum(world.limits.speed_limit, np.sqrt(sideways / bend)))
-
-
-def calm_speed(road: Road, world: World) -> float:
-    """Returns the highest constant speed in m/s at which a calm driver can drive the whole road."""
-    return float(calm_speeds(road, world, road.sample().s).min())
-
-
-def calm_profile(road: Road, world: World, first: float = 0.0) -> SpeedProfile:
-    """Returns the speeds of a calm driver in the middle of the right lane, who begins with ``first`` m/s, or
-    as fast as the road allows."""
-    start = start_of(road)
-    count = max(2, int(np.ceil((road.length - start) / STEP)) + 1)
-    s = np.linspace(start, road.length, count)
-    step, bend = float(s[1] - s[0]), road.curvature(s)
-    grip = GRIP * world.site.friction
-    pull = min(PULL / GRAVITY, grip)
-    top = world.limits.speed_limit
-    limits = DrivingLimits(min(COMFORT / GRAVITY, grip), pull, pull, top, first=first)
-    offset = world.profile_of(road).middle(s)
-    speed = lane_speed(bend, 0.0, step, offset, limits)
-    stretch = np.maximum(1 - bend * offset, 0.0)
-    along = step * (stretch[1:] + stretch[:-1]) / 2
-    speed = np.minimum(speed, np.sqrt(first**2 + 2 * pull * GRAVITY * np.r_[0.0, np.cumsum(along)]))
-    return SpeedProfile(speed, np.r_[0.0, np.cumsum(2 * along / (speed[1:] + speed[:-1]))])
 
 
 def on_the_ground(poses: Poses, ahead: float) -> Array:

@@ -1,8 +1,8 @@
-"""Reads recordings of how others moved: tables (.csv), and trajectories of ASAM OpenSCENARIO 1.x (.xosc; see
-``roadgpt.export.moves``).
+"""Reads recordings of how others moved: tables (.csv), and files that plug-ins of the kind ``recordings``
+read, each named after their suffix.
 
 A table has one row for each actor and moment, in any order, with the columns of ``RecordedRow``. The "Ego" of
-either is the tested car and is not replayed.
+any is the tested car and is not replayed.
 
 An actor is there from its first to its last moment; before and after, too, where it then stands still."""
 
@@ -15,11 +15,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import zip_longest
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, cast
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from pydantic import BaseModel, Field, ValidationError
 
+from roadgpt import plugins
 from roadgpt.errors import UsageError, advice_on
 from roadgpt.language.names import ActorKind
 from roadgpt.network import network_of
@@ -119,21 +120,20 @@ def heights(road: "Road", world: "World", points: FloatArray) -> FloatArray:
 
 
 def read_recording(path: Path) -> Recording:
-    """Reads a file, ``.csv`` or ``.xosc``. Raises UsageError if it cannot be used."""
+    """Reads a file. Raises UsageError if it cannot be used."""
     its = path.stat() if path.is_file() else None
     return _read(path) if its is None else _read(path, its.st_size, its.st_mtime_ns)
 
 
 @lru_cache(maxsize=2)  # the roads of a folder of runs are driven with the same file
 def _read(path: Path, *_state: int) -> Recording:
-    readers = {".csv": _table, ".xosc": _scenario}
-    reader = readers.get(path.suffix)
-    if reader is None:
+    if path.suffix not in (".csv", *plugins.names("recordings")):
         raise UsageError(
             f"{path} is no recording of others; give a table (.csv) or an OpenSCENARIO file (.xosc)"
         )
     try:
-        found, told = reader(read_bytes(path, what="a recording of others"))
+        content = read_bytes(path, what="a recording of others")
+        found, told = _table(content) if path.suffix == ".csv" else _by_plugin(path.suffix, content)
     except UsageError as error:
         raise UsageError(f"{path}: {error}" if str(path) not in str(error) else str(error)) from error
     except OSError as error:
@@ -165,17 +165,9 @@ def _staying(rows: FloatArray, before: bool = True, after: bool = True) -> Float
     return rows
 
 
-def _scenario(content: bytes) -> Found:
-    from roadgpt.export.moves import read_moves  # tables do not need it
-
-    found, told = read_moves(content)
-    return {
-        each.name: (
-            Actor(each.name, cast(ActorKind, each.kind), Size(*each.size)),
-            _staying(each.rows, before=False, after=each.stays),
-        )
-        for each in found
-    }, told
+def _by_plugin(suffix: str, content: bytes) -> Found:
+    found, told = plugins.find("recordings", suffix)(content)
+    return {who.name: (who, _staying(rows, before=False, after=stays)) for who, rows, stays in found}, told
 
 
 def _table(content: bytes) -> Found:

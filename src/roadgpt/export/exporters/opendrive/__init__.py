@@ -14,15 +14,18 @@ from roadgpt.export.exporters.opendrive.boundaries import boundary
 from roadgpt.export.exporters.opendrive.lanes import LaneLinks, RoadParts, lateral_profile
 from roadgpt.export.exporters.opendrive.reference_line import Start, bounds_of, geometries, reaches, starts_of
 from roadgpt.export.exporters.opendrive.signals import Signals
-from roadgpt.export.georeference import PROJECTION
 from roadgpt.export.markup import Value, XmlElement
 from roadgpt.geometry import PieceCurve
 from roadgpt.network import Junction, Network, NetworkRoad, RoadEnd, legs_of, network_of, only_road
 from roadgpt.network.landscape import ground_around
 from roadgpt.road import Road, World
 
-__all__ = ["OpenDrive", "document"]
+__all__ = ["LATITUDE", "LONGITUDE", "OpenDrive", "document"]
 
+LATITUDE, LONGITUDE = 48.0, 9.0  # degrees, of the corner (0, 0)
+PROJECTION = f"+proj=tmerc +lat_0={LATITUDE:g} +lon_0={LONGITUDE:g} +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m"
+"""A geographic position of the map, as a PROJ string without +no_defs, which some programs do not understand.
+It is arbitrary; 9 E is the centre of a UTM zone, so north on the map is also grid north."""
 ROUTE, GROUND = ".route.json", ".ground.glb"
 """Suffix of the file that names the roads and lanes of a route: ``{"route": [[road, lane], ...]}``."""
 REVISION = 8  # ASAM OpenDRIVE 1.8

@@ -11,15 +11,15 @@ from pathlib import Path
 import numpy as np
 
 from roadgpt.export.ego import Poses
-from roadgpt.export.georeference import degrees
-from roadgpt.export.lanelets import LaneletBound, arms_of, lanelets_of
+from roadgpt.export.exporters.opendrive.signals import SIGNS
 from roadgpt.export.markup import XmlElement
 from roadgpt.geometry.curve import Array
-from roadgpt.language.names import Control
 from roadgpt.network import Arm, Junction, Network, network_of
 from roadgpt.network.markings import line_to_stop_at, place_of_sign
 from roadgpt.road import Road, World
 from roadgpt.road.profile import Marking
+from roadgpt_formats.georeference import degrees
+from roadgpt_formats.lanelets import LaneletBound, arms_of, lanelets_of
 
 UTM_SCALE = 0.9996  # scale of lengths at the central meridian of a UTM zone
 DEGREE_DECIMALS = 12  # a tenth of a micrometre
@@ -30,12 +30,7 @@ TAGS: dict[Marking, dict[str, str]] = {
     "double": {"type": "line_thin", "subtype": "solid_solid"},
     "none": {"type": "virtual"},
 }
-SIGNS: dict[Control, dict[str, str]] = {
-    "stop": {"type": "traffic_sign", "subtype": "de206"},
-    "yield": {"type": "traffic_sign", "subtype": "de205"},
-    "priority": {"type": "traffic_sign", "subtype": "de306"},
-    "lights": {"type": "traffic_light", "subtype": "red_yellow_green", "height": "0.9"},
-}
+LIGHT = {"type": "traffic_light", "subtype": "red_yellow_green", "height": "0.9"}
 SIGN_WIDTH, SIGN_HEIGHT = 0.6, 2.0  # m: width, and height of the lower edge above the road
 Cell = tuple[int, int]
 KEEP = {"visible": "true", "version": "1"}  # editors of OpenStreetMap refuse files without these
@@ -145,15 +140,16 @@ class _MapBuilder:
         member, heading = network.road(arm.end.road), arm.direction + pi
         foot = member.road.at(*place_of_sign(member, arm.end.contact)) + (0.0, 0.0, SIGN_HEIGHT)
         to_left = np.array([-sin(heading), cos(heading), 0.0]) * SIGN_WIDTH / 2  # as drivers see it
-        board = self._way(self._add_nodes(np.round([foot + to_left, foot - to_left], 4)), SIGNS[arm.control])
+        sign = {"type": "traffic_sign", "subtype": f"de{SIGNS[arm.control][0]}"}
+        shown = LIGHT if arm.control == "lights" else sign
+        board = self._way(self._add_nodes(np.round([foot + to_left, foot - to_left], 4)), shown)
         rule = XmlElement("relation", {"id": next(self._numbers), **KEEP})
         rule.add("member", {"type": "way", "ref": board, "role": "refers"})
         line = line_to_stop_at(network, junction, arm)
         if line is not None:
             way = self._way(self._add_nodes(np.round(line, 4)), {"type": "stop_line"})
             rule.add("member", {"type": "way", "ref": way, "role": "ref_line"})
-        kind = "traffic_light" if arm.control == "lights" else "traffic_sign"
-        self.rules.append(_tagged(rule, {"type": "regulatory_element", "subtype": kind}))
+        self.rules.append(_tagged(rule, {"type": "regulatory_element", "subtype": shown["type"]}))
         for each in incoming:
             # members must come before the tags
             link = {"type": "relation", "ref": rule.attributes["id"], "role": "regulatory_element"}

@@ -20,9 +20,7 @@ from roadgpt.brief.visibility import LOW_SUN, amount_in
 from roadgpt.export.ego import (
     CAR,
     Poses,
-    SpeedProfile,
     Trajectories,
-    calm_profile,
     goal_of,
     on_the_ground,
     start_of,
@@ -30,12 +28,13 @@ from roadgpt.export.ego import (
 from roadgpt.export.exporters.opendrive import OpenDrive
 from roadgpt.export.exporters.opendrive.signals import Signals
 from roadgpt.export.markup import Value, XmlElement
-from roadgpt.export.moves import EGO, key_of, while_moving
 from roadgpt.geometry.curve import Array
 from roadgpt.language.names import ActorKind
 from roadgpt.language.table import ROAD_USERS, WEATHER, RoadUser
 from roadgpt.network import RoadEnd, legs_of, network_of, only_road
 from roadgpt.road import Road, World
+from roadgpt_formats.calm_driver import SpeedProfile, calm_profile
+from roadgpt_formats.recorded_scenario import EGO, key_of, while_moving
 
 DATE = "2026-01-01T00:00:00"  # the same in every file, so that the same road gives the same bytes; midnight
 MIDNIGHT = -0.5  # rad, elevation of the sun at night, well below that of any twilight

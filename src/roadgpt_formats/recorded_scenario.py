@@ -9,13 +9,14 @@ import math
 import xml.etree.ElementTree as ET
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
-from roadgpt.language.table import ROAD_USERS
+from roadgpt.language.table import ROAD_USERS, Size
+from roadgpt.traffic.actor import Actor
 
 EGO = "Ego"  # name of the tested car
 SMALL = 1.475  # m, midway between the heights of a child and an adult
@@ -24,20 +25,10 @@ FARTHEST = 1e6  # m or s, of a number
 SLOWEST = 0.01  # m/s; a slower motion has no direction
 Timed = tuple[float, ET.Element]
 """An action and the time in seconds at which it begins; NaN if that depends on something else."""
-
-
-class Moves(NamedTuple):
-    """How an entity of a scenario moves."""
-
-    name: str
-    kind: str
-    size: Sequence[float]
-    """Length, width and height in metres."""
-    rows: Array
-    """Shape (n, 6), by rising time: time; x, y and z of the middle of the box on the ground, z NaN where it
-    is not given; heading (unwrapped) and speed."""
-    stays: bool
-    """Whether it is not deleted after the last of these times."""
+Moves = tuple[Actor, Array, bool]
+"""An entity of a scenario; how it moves, of shape (n, 6), by rising time: time; x, y and z of the middle of
+the box on the ground, z NaN where it is not given; heading (unwrapped) and speed; and whether it is not
+deleted after the last of these times."""
 
 
 def key_of(body: str) -> str:
@@ -180,7 +171,8 @@ def _moves(entity: ET.Element, name: str, actions: Sequence[Timed]) -> Moves:
         raise _UnknownError("deleted before it comes")
     said = body.get("name", "")
     states = _states(rows, _number(middle, "x"), _number(middle, "y"))
-    return Moves(name, said if said in kinds else usual, box, states, deleted is None)
+    kind = next((kind for kind in kinds if kind == said), usual)
+    return Actor(name, kind, Size(*box)), states, deleted is None
 
 
 def _number(element: ET.Element, name: str, usual: float | None = None) -> float:

@@ -10,7 +10,7 @@ import pytest
 from exported import ROADS, WORLD
 from roadgpt.errors import ExportError
 from roadgpt.export import save
-from roadgpt.export.exporters import sumo
+from roadgpt_formats import sumo
 
 ALWAYS = {".nod.xml", ".edg.xml", ".netccfg", ".rou.xml", ".sumocfg"}
 

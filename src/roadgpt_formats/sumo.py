@@ -15,13 +15,14 @@ from typing import NamedTuple
 import numpy as np
 
 from roadgpt.errors import ExportError
-from roadgpt.export.ego import CAR, PULL, Poses, calm_speeds
+from roadgpt.export.ego import CAR, Poses
 from roadgpt.export.markup import Value, XmlElement, number
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Profile, Road, World
 from roadgpt.road.edges import line, stations
 from roadgpt.road.profile import Width
+from roadgpt_formats.calm_driver import PULL, calm_speeds
 
 PATIENCE = 120.0  # s, for netconvert
 PRECISION = 4  # decimals of a metre in a network
@@ -40,6 +41,7 @@ class Sumo:
 
     name = "sumo"
     suffix = ".nod.xml"
+    for_junctions = "opendrive can, and netconvert reads it"
     lacks = ("superelevation", "changes of width", "the land around")
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:

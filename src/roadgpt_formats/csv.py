@@ -26,6 +26,7 @@ class Csv:
 
     name = "csv"
     suffix = ".csv"
+    draws_edges = False
     holds_junctions = True
     needs_route = True
     lacks = ("the land around",)

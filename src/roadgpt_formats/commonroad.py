@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-from roadgpt.brief.junctions import SIDE, side_of
-from roadgpt.export.ego import Poses, calm_speed, start_of
-from roadgpt.export.georeference import LATITUDE, LONGITUDE
-from roadgpt.export.lanelets import Lanelet, arms_of, lanelets_of
+from roadgpt.brief.junctions import side_of
+from roadgpt.export.ego import Poses, start_of
+from roadgpt.export.exporters.opendrive import LATITUDE, LONGITUDE
+from roadgpt.export.exporters.opendrive.signals import SIGNS
 from roadgpt.export.markup import XmlElement, number
 from roadgpt.geometry import wrap_angle
 from roadgpt.language.names import Control, Way
@@ -23,13 +23,14 @@ from roadgpt.network import Arm, Connection, Junction, Leg, Network, legs_of, ne
 from roadgpt.network.markings import gives_way_to_ring, line_to_stop_at, place_of_sign
 from roadgpt.road import Road, World
 from roadgpt.road.profile import Marking
+from roadgpt_formats.calm_driver import calm_speed
+from roadgpt_formats.lanelets import Lanelet, arms_of, lanelets_of
 
 STEP = 0.1  # s
 PATIENCE = 2.0  # times the duration of a calm drive to the end
 NOWHERE = -999  # GeoNames' number for no place
 MARKS: Mapping[Marking, str] = {"solid": "solid", "broken": "dashed", "none": "no_marking", "double": "solid"}
 SPEED_LIMIT = "274"  # number of the sign in Germany and in Zamunda, CommonRoad's fictional country
-SIGNS: dict[Control, str] = {"yield": "205", "stop": "206", "priority": "306"}
 LINES: dict[Control, str] = {"yield": "dashed", "stop": "solid", "lights": "solid"}
 """Type of the line at the end of an arm, by the sign or light of the arm."""
 GREEN = 1000  # time steps; duration of the only phase of a light
@@ -119,7 +120,9 @@ class Crossings:
             return "straight"
         road = self.network.road(way.road).road
         turn = degrees(float(road.heading(road.length) - road.heading(0.0)))
-        return side_of(turn * SIDE if junction.kind == "diverge" and abs(turn) > 1 else turn)
+        if junction.kind == "diverge" and abs(turn) > 1:
+            return "left" if turn > 0 else "right"
+        return side_of(turn)
 
     def _place(self, arm: Arm) -> list[float]:
         member = self.network.road(arm.end.road)
@@ -128,7 +131,7 @@ class Crossings:
         ]
 
     def _sign(self, arm: Arm, id_: int) -> XmlElement:
-        return _sign(id_, self._place(arm), "false", trafficSignID=SIGNS[arm.control])
+        return _sign(id_, self._place(arm), "false", trafficSignID=SIGNS[arm.control][0])
 
     def _light(self, arm: Arm, id_: int) -> XmlElement:
         out = XmlElement("trafficLight", {"id": id_})

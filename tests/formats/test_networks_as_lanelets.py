@@ -17,7 +17,7 @@ from lxml import etree
 from roadgpt.brief.plan import read_plan
 from roadgpt.design import draft
 from roadgpt.export import save
-from roadgpt.export.georeference import LATITUDE, LONGITUDE
+from roadgpt.export.exporters.opendrive import LATITUDE, LONGITUDE
 from roadgpt.network import Route, made_from
 from roadgpt.road import Site, World
 from tables import rows

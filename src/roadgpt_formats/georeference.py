@@ -1,18 +1,14 @@
-"""Defines a geographic position of the map, for formats that require one.
+"""Computes geographic coordinates of places on the map, for formats that require them.
 
-The corner (0, 0) of the map is placed at 48 N, 9 E, with x to the east. The position is arbitrary. 9 E is the
-centre of a UTM zone, so north on the map is also grid north. Projection: transverse Mercator on WGS 84,
-inverse series after Snyder, Map Projections: A Working Manual (US Geological Survey Professional Paper 1395),
-pp. 60-64; accurate to 0.1 mm within 10 km of the corner."""
+The projection is that of OpenDRIVE files: transverse Mercator on WGS 84, x to the east; inverse series after
+Snyder, Map Projections: A Working Manual (US Geological Survey Professional Paper 1395), pp. 60-64; accurate
+to 0.1 mm within 10 km of the corner."""
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from roadgpt.export.exporters.opendrive import LATITUDE, LONGITUDE
 from roadgpt.geometry.curve import Array
-
-LATITUDE, LONGITUDE = 48.0, 9.0  # degrees, of the corner (0, 0)
-PROJECTION = f"+proj=tmerc +lat_0={LATITUDE:g} +lon_0={LONGITUDE:g} +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m"
-"""The projection as a PROJ string. It omits +no_defs, which some programs do not understand."""
 
 SEMI_MAJOR = 6_378_137.0  # m, WGS 84
 FLATTENING = 1 / 298.257223563  # WGS 84

@@ -1,4 +1,4 @@
-"""CSV, SBFT tests and GeoJSON, and the place on Earth that GeoJSON needs."""
+"""CSV and GeoJSON, and the place on Earth that GeoJSON needs."""
 
 import csv
 import json
@@ -9,9 +9,8 @@ import pytest
 
 from exported import ROADS, WORLD, drive
 from roadgpt.export import save
-from roadgpt.export.georeference import FLATTENING, LATITUDE, LONGITUDE, SEMI_MAJOR, degrees
-from roadgpt.network import read_road
 from roadgpt.road import Profile
+from roadgpt_formats.georeference import FLATTENING, LATITUDE, LONGITUDE, SEMI_MAJOR, degrees
 
 
 def columns_of(file: Path) -> dict[str, np.ndarray]:
@@ -41,18 +40,6 @@ def test_every_column_of_road_and_drive_is_what_its_name_says(tmp_path: Path) ->
         assert list(found) == list(wanted)
         for name, values in wanted.items():
             assert found[name] == pytest.approx(values, abs=2e-6), name
-
-
-@pytest.mark.parametrize("name", ["arcs", "spline", "flat points"])
-def test_the_sbft_test_is_read_as_the_road(tmp_path: Path, name: str) -> None:
-    road = ROADS[name]
-    (file,) = save(road, tmp_path, ["sbft"], WORLD)
-    again = read_road(file)
-    assert again.control_points() == pytest.approx(road.control_points(), abs=1e-5)
-    if name != "flat points":
-        s = np.linspace(0, road.length, 200)
-        _, away = road.locate(*again.at(s * again.length / road.length)[:, :2].T)
-        assert np.abs(away).max() < 0.01
 
 
 def on_globe(points: np.ndarray) -> np.ndarray:

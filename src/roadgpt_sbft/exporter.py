@@ -20,6 +20,7 @@ class Sbft:
 
     name = "sbft"
     suffix = ".sbft.json"
+    draws_edges = False
     lacks = ("the land around",)
 
     def doubts(self, road: Road, world: World) -> tuple[str, ...]:

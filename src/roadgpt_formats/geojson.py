@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from roadgpt.export.ego import Poses
-from roadgpt.export.georeference import degrees
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Network, network_of, only_road
 from roadgpt.road import Road, World
 from roadgpt.road.edges import finite
+from roadgpt_formats.georeference import degrees
 
 STEP = 1.0  # m
 SAME = 1e-6  # m; a width that varies by less is taken as constant
@@ -31,7 +31,7 @@ class GeoJson:
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes one feature collection.
 
-        ``roadgpt.export.georeference`` defines the geographic position of the map. For a route through
+        ``roadgpt_formats.georeference`` defines the geographic position of the map. For a route through
         junctions, the paved area of the whole network takes the place of the lanes. A map without a route has
         no centre line."""
         s = road.sample(STEP).s

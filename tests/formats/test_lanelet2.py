@@ -11,9 +11,9 @@ from shapely.geometry import Polygon
 from exported import ROADS, WORLD
 from profiled import bend
 from roadgpt.export import doubts, save
-from roadgpt.export.georeference import LATITUDE, LONGITUDE
-from roadgpt.export.lanelets import lanelets_of
+from roadgpt.export.exporters.opendrive import LATITUDE, LONGITUDE
 from roadgpt.road import Road, World
+from roadgpt_formats.lanelets import lanelets_of
 
 NEAR = [name for name in ROADS if name != "far away"]  # the others leave the UTM zone's middle
 
