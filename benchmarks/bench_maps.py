@@ -21,9 +21,8 @@ from shapely import LineString, points
 
 from roadgpt import World, judge, simulate
 from roadgpt.errors import UsageError
-from roadgpt.network import Route
+from roadgpt.network import ImportedMap, Route, read_map
 from roadgpt.network.lanes import Lanes, lanes_of
-from roadgpt.network.opendrive import ImportedMap, read_map
 from roadgpt.network.routing import random_routes
 from slow_opendrive import Movement, SlowMap
 

@@ -16,7 +16,7 @@ from roadgpt.errors import PartError
 
 KINDS = (
     "providers", "readers", "designers", "rules", "exporters", "simulators", "drivers",
-    "generators", "columns", "executors",
+    "generators", "columns", "executors", "maps",
 )  # fmt: skip
 
 

@@ -18,7 +18,7 @@ from roadgpt.export import save
 from roadgpt.network import read_opendrive
 from roadgpt.road import Road
 
-DATA = Path(__file__).parents[1] / "network" / "opendrive" / "data"
+DATA = Path(__file__).parents[1] / "formats" / "opendrive" / "data"
 PROFILED = {f"seed{seed}": random_road(seed) for seed in (1, 9, 17)}
 CONFIG = """<Config><Param name="InputFile" value="{file}"/><CheckerBundle application="xodrBundle">
 <Param name="resultFile" value="{result}"/></CheckerBundle></Config>"""

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 OF_FOLDER, OF_USER, OF_ENVIRONMENT = "folder", "user", "environment"
 YOURSELF = "a file of this folder cannot decide that; say it yourself with the option"
-ENDINGS = (".json", ".jsonl", ".xodr", ".csv", ".tsv", ".sbft")  # of road files
+ENDINGS = (".json", ".jsonl", ".csv", ".tsv", ".sbft")  # of road files, beside those of maps
 WHOLE_PATH = "give the whole path, from the root of the disk"
 Guard = Callable[[str, str], str]
 """Takes a value and its source, such as ``OF_FOLDER``, and says why it is refused; empty if it is not."""
@@ -758,6 +758,11 @@ def drawing_of(formats: Any, axes: Any = "equal") -> "Drawing | None":
     return Drawing(axes, formats)
 
 
+def endings() -> tuple[str, ...]:
+    """Returns the endings of road files; those of maps are the names of plug-ins."""
+    return (*ENDINGS, *(f".{name}" for name in plugins.names("maps")))
+
+
 def pictures_of(values: dict[str, Any]) -> Any:
     """Returns the formats of the pictures to draw, none with --no-plot; removes both from ``values``."""
     given = values.pop("picture_formats")
@@ -767,7 +772,7 @@ def pictures_of(values: dict[str, Any]) -> Any:
 def refuse_file(words: str, does: str, *command: str) -> None:
     """Raises UsageError for the name of a road file in place of a description; a command ``does`` what is
     meant."""
-    if len(words.split()) == 1 and words.lower().endswith(ENDINGS):
+    if len(words.split()) == 1 and words.lower().endswith(endings()):
         raise UsageError(
             f"{words} is the name of a file, not a description; roadgpt import reads maps, and this {does} "
             f"the road in a file: {command_line(*command, words)}"

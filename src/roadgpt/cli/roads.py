@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
-from roadgpt.cli.options import ENDINGS, WORLD, choices_said, typed
+from roadgpt.cli.options import WORLD, choices_said, endings, typed
 from roadgpt.cli.screen import Row, Screen, unreadable
 from roadgpt.cli.streams import warn
 from roadgpt.errors import ExportError, PartError, UsageError, explained
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 FAILED, UNREADABLE = 1, 2  # exit statuses: a format cannot hold a road; a name or a road cannot be used
 LANES = ("lanes", "lane_width", "lane_width_end", "shoulder", "bank")
 """Fields of the World that have no effect on a road with a cross-section of its own."""
-WITHOUT_MAP = (".xodr", ".csv", ".tsv")  # endings of formats that know no map
 ROOM = 20.0  # m kept free around a road that is moved onto the map
 BORDER = 1.5  # m between a road and the border of its map, or a spline through its points may leave the map
 ROUND_MAP = 50.0  # m, to which the size of a map is rounded up
@@ -153,7 +152,7 @@ def _single(file: str) -> NamedRoad:
     if is_run(path):
         return _run(path, file)
     stem = Path(os.path.realpath(path)).name
-    for ending in ENDINGS:
+    for ending in endings():
         stem = stem.removesuffix(ending)
     if (folder := run_of_test(path)) is not None:
         return replace(_run(folder, file), stem=stem)
@@ -178,7 +177,7 @@ def roads_in(files: Sequence[str]) -> list[str]:
             others = [plural(done - len(found), "test")] * (done > len(found))
         elif path.is_dir() and not (path / "road.json").is_file():
             for each in sorted(path.iterdir(), key=_in_order):
-                if (each / "road.json").is_file() or each.suffix.lower() in ENDINGS:
+                if (each / "road.json").is_file() or each.name.lower().endswith(endings()):
                     found += [str(each)] * (not each.name.endswith(BESIDE_A_ROAD))
                 else:
                     others.append(each.name)
@@ -204,7 +203,9 @@ def source_of(
     What the file states goes before ``world``, that of the options, except for options that were typed, or
     the fields that ``told`` names. If the file defines lanes, a remark names the lane options that have no
     effect."""
+    from roadgpt.network.maps import is_map_file
     from roadgpt.road import Road, World
+    from roadgpt.road.points import SUFFIXES
 
     blueprint, remarks, world_of_file, *_ = _source_in(file)
     context, stated = click.get_current_context(silent=True), dict(world_of_file)
@@ -225,7 +226,8 @@ def source_of(
         remarks += (f"the surface of --scene goes before the friction {stated['friction']:g} of the file",)
         told = told | {"friction"}
     world = world.changed(**{name: value for name, value in stated.items() if name not in told})
-    if Path(file).suffix.lower() in WITHOUT_MAP and isinstance(blueprint, Road) and "map_size" not in told:
+    has_no_size = is_map_file(Path(file)) or Path(file).suffix.lower() in SUFFIXES
+    if has_no_size and isinstance(blueprint, Road) and "map_size" not in told:
         _, size, _, more = on_a_map(blueprint, world, keep_place=True)
         world, remarks = world.changed(map_size=size), remarks + more
     if own:

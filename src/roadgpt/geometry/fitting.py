@@ -1,7 +1,4 @@
-"""Joins poses by clothoids, and leads a curve past places where the lines of a file do not meet.
-
-fitted     joins poses about a metre apart; leaves out poses near gaps and kinks
-smoothed   leads through places 5 m apart, where gaps and kinks are too close together for that"""
+"""Joins poses about a metre apart by clothoids; leaves out poses near places where two lines do not meet."""
 
 from dataclasses import dataclass, replace
 
@@ -14,9 +11,6 @@ ROUNDS = 12  # Newton steps of a clothoid; three are enough for gentle bends
 _NODES_24, _WEIGHTS_24 = np.polynomial.legendre.leggauss(24)
 _TAU, _W = (_NODES_24 + 1) / 2, _WEIGHTS_24 / 2
 BLOCK = 20_000  # clothoids at a time, to spare memory
-KINK = 0.01  # rad; larger kinks are reported
-TOLD = 0.01  # m; larger gaps are reported
-BACK = np.pi / 2  # rad; where the heading jumps by more, the line runs back on itself
 GENTLE = 0.002  # 1/m, curvature that bridging a join may add
 FARTHEST = 2.5  # m before and behind a join
 NEAREST = 0.1  # m; joins that need less are left unchanged
@@ -24,7 +18,6 @@ SHORT = 1.0  # m; a shorter element between two joins is skipped
 SHARE = 0.45  # of any other element, that a join may take at either end
 CLOSEST = 0.05  # m between the poses of a bridged line
 WIDEST = 12.0  # m between two poses; over a larger gap the line cannot be reconstructed
-NODES, APART = 5.0, 0.5  # m between the places of a line with very close joins, and at least
 
 Fit = tuple[PieceCurve, Array, Array]
 """A curve, and the stations in metres of places along it: in the file, and on the curve."""
@@ -110,47 +103,6 @@ def bridged(line: SampledLine) -> SampledLine | None:
     return replace(line, poses=poses).only(kept)
 
 
-def corners(line: SampledLine) -> list[int]:
-    """Returns the indices of poses about 5 m apart, and of those at kinks, through which a smooth line leads
-    where the joins of elements are too close together for ``bridged``."""
-    kept = [0]
-    for i in range(1, len(line.s) - 1):
-        since = line.s[i] - line.s[kept[-1]]
-        is_corner = abs(line.kinks[i]) > KINK / 10
-        if (since >= NODES or (is_corner and since > APART)) and line.s[-1] - line.s[i] > APART:
-            kept.append(i)
-    return [*kept, len(line.s) - 1]
-
-
-def smoothed(line: SampledLine) -> Fit | None:
-    """Returns a curve as ``fitted`` does, of clothoids through the ``corners`` only, in the directions of
-    their neighbours."""
-    kept = np.array(corners(line))
-    points = line.poses[kept, :2]
-    if len(points) < 3:
-        return None
-    chords = np.diff(points, axis=0)
-    length = np.hypot(*chords.T)
-    along = np.unwrap(np.arctan2(chords[:, 1], chords[:, 0]))
-    # the longer a chord, the less it says about the direction at its end
-    middle = (along[:-1] * length[1:] + along[1:] * length[:-1]) / (length[1:] + length[:-1])
-    heading = np.r_[2 * along[0] - middle[0], middle, 2 * along[-1] - middle[-1]]
-    return _through(line.s[kept], np.column_stack([points, heading]))
-
-
-def turns_back(line: SampledLine) -> tuple[float, float] | None:
-    """Returns the station (m) and angle (rad) of a kink after which the line runs backwards, if any."""
-    kept = bridged(line)
-    for i in np.flatnonzero(np.abs(line.kinks) > BACK):
-        turned = line.kinks[i]
-        if kept is not None:
-            behind = min(max(int(np.searchsorted(kept.s, line.s[i])), 1), len(kept.s) - 1)
-            turned = wrap_angle(kept.poses[behind, 2] - kept.poses[behind - 1, 2])
-        if abs(turned) > BACK:
-            return float(line.s[i]), float(abs(turned))
-    return None
-
-
 def _away_from_joins(line: SampledLine) -> Array:
     # a clothoid of length l that closes a gap g has a curvature of 6 g / l^2, for a kink d of 4 d / l
     wanted = np.maximum(np.sqrt(1.5 * line.gaps / GENTLE), 2 * np.abs(line.kinks) / GENTLE)
@@ -180,34 +132,16 @@ def _thinned(s: Array, kept: Array) -> Array:
     return np.array(out)
 
 
-def misses(line: SampledLine) -> str:
-    """Returns how many noticeable kinks and gaps the line has, and the largest of each; "" if it has none."""
-    kinks, gaps = np.abs(line.kinks), line.gaps
-    parts = []
-    for errors, least, name, unit in (
-        (np.degrees(kinks), np.degrees(KINK), "kink", "degrees"),
-        (gaps, TOLD, "gap", "m"),
-    ):
-        count = int((errors > least).sum())
-        if count:
-            worst = int(errors.argmax())
-            size = f"{errors[worst]:.1f}" if unit == "degrees" else f"{errors[worst]:.2f}"
-            up_to, most = ("of", "") if count == 1 else ("of up to", "the worst ")
-            parts.append(
-                f"{count} {name}{'s' * (count > 1)} {up_to} {size} {unit} ({most}at s = {line.s[worst]:.1f})"
-            )
-    return " and ".join(parts)
-
-
 def fitted(line: SampledLine) -> Fit | None:
     """Returns a curve of clothoids through the poses, and the stations in metres of these poses, in the file
     and on the curve. Poses near gaps between elements are left out. Returns None if clothoids cannot follow
     the line."""
     kept = bridged(line)
-    return None if kept is None else _through(kept.s, kept.poses)
+    return None if kept is None else through(kept.s, kept.poses)
 
 
-def _through(s: Array, poses: Array) -> Fit | None:
+def through(s: Array, poses: Array) -> Fit | None:
+    """Returns a curve as ``fitted`` does, through all poses, which have the stations ``s`` in the file."""
     pieces = clothoids(poses)
     if pieces is None:
         return None

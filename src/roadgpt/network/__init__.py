@@ -24,6 +24,7 @@ from roadgpt.network.road_or_route import (
 
 if TYPE_CHECKING:
     from roadgpt.network.growing import build_route
+    from roadgpt.network.maps import ImportedMap, ImportedRoad, read_map, read_opendrive
     from roadgpt.network.network import (
         Arm,
         Connection,
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
         RoadEnd,
         Roundabout,
     )
-    from roadgpt.network.opendrive import ImportedRoad, read_map, read_opendrive
     from roadgpt.network.route import Passage, Route
     from roadgpt.network.source import read_road, read_source
 
@@ -44,6 +44,7 @@ __all__ = [
     "Arm",
     "Connection",
     "Continuation",
+    "ImportedMap",
     "ImportedRoad",
     "Junction",
     "LaneLink",
@@ -71,8 +72,8 @@ __all__ = [
 
 _LATER = {
     "growing": "build_route",
+    "maps": "ImportedMap ImportedRoad read_map read_opendrive",
     "network": "Arm Connection Continuation Junction LaneLink Leg Network NetworkRoad RoadEnd Roundabout",
-    "opendrive": "ImportedRoad read_map read_opendrive",
     "route": "Passage Route",
     "source": "read_road read_source",
 }

@@ -2,13 +2,14 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
 from pydantic import ValidationError
 
 from roadgpt.errors import UsageError, command_line
+from roadgpt.network.maps import ImportedMap, is_map_file, read_opendrive, reader_of
 from roadgpt.network.road_or_route import made_from, road_from_json
 from roadgpt.network.route import Route
 from roadgpt.reading import json_of, read_json, read_text
@@ -16,14 +17,10 @@ from roadgpt.road import Design, Geometry, Road, World, read_design
 from roadgpt.road.design import first_error, is_design
 from roadgpt.road.points import SUFFIXES, plain, points_in, points_of_table
 
-if TYPE_CHECKING:
-    from roadgpt.network.opendrive import ImportedMap
-
 ASTRAY = 1.5  # m; a control point farther than this from all points 1 m apart on a road is not on the road
-OPENDRIVE = ".xodr"
 LINES = ".jsonl"
 LARGEST = 50_000_000  # bytes of a road file
-MAP = 2  # roads; an OpenDRIVE file with fewer is no map
+MAP = 2  # roads; a file with fewer is no map
 SHAPES = (
     "a road, a design or a test written by roadgpt, an SBFT or SDC-Scissor test with road_points, "
     "a list of [x, y] or [x, y, z], a table of points (.csv), or an OpenDRIVE file (.xodr)"
@@ -69,9 +66,9 @@ def read_sources(path: str | Path, wanted: str | None = None) -> list[RoadSource
     ending, card, world = path.suffix.lower(), path.with_name("run.json"), {}
     text = ""
     try:
-        text = "<" if ending == OPENDRIVE else read_text(path, LARGEST, "a road file")
+        text = "<" if is_map_file(path) else read_text(path, LARGEST, "a road file")
         if text.lstrip()[:1] == "<":
-            return [_of_opendrive(path, wanted)]
+            return [_of_map(path, wanted)]
         if ending == LINES:
             text = "[" + ",\n".join(line for line in text.splitlines() if line.strip()) + "]"
         data = text if ending in SUFFIXES else json_of(text)
@@ -94,28 +91,18 @@ def read_sources(path: str | Path, wanted: str | None = None) -> list[RoadSource
     return found
 
 
-def _of_opendrive(path: Path, wanted: str | None) -> RoadSource:
-    if wanted is None and (found_map := map_in(path)) is not None:
-        values, told = found_map.world_values()
-        whole = Route.along(found_map.network, ())
-        return RoadSource(whole, (*found_map.remarks, *told), values, path.stem)
-    from roadgpt.network.opendrive import read_opendrive
-
+def _of_map(path: Path, wanted: str | None) -> RoadSource:
+    if wanted is None and (found := map_in(path)) is not None:
+        values, told = found.world_values()
+        return RoadSource(Route.along(found.network, ()), (*found.remarks, *told), values, path.stem)
     road = read_opendrive(path, wanted)
     return RoadSource(road.road, road.remarks, road.world_values, road.id, road.name)
 
 
-def map_in(path: Path) -> "ImportedMap | None":
-    """Returns the map in an OpenDRIVE file; None if the file has a single road, which is read by itself."""
-    from roadgpt.network.opendrive import read_map
-    from roadgpt.network.opendrive.tree import count_roads
-
-    try:
-        if count_roads(path) < MAP:
-            return None
-    except UsageError as error:
-        raise UsageError(f"{path}: {error}") from error
-    return read_map(path)
+def map_in(path: Path) -> ImportedMap | None:
+    """Returns the map in a file; None if the file has a single road, which is read by itself."""
+    reader = reader_of(path)
+    return reader.read_map(path) if reader.count_roads(path) >= MAP else None
 
 
 def _is_test(data: Any) -> bool:

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from roadgpt.ground.relief import Relief
-    from roadgpt.network import Leg
-    from roadgpt.network.opendrive import ImportedMap
+    from roadgpt.network import ImportedMap, Leg
     from roadgpt.network.source import RoadSource
 
 ROUTES = whole(1, 1_000, "a number of routes")
@@ -267,12 +266,12 @@ def import_(
     roadgpt import town.xodr
     roadgpt import town.xodr --random-routes 20 --out routes
     roadgpt import town.xodr --road 12"""
+    from roadgpt.network.maps import is_map_file
     from roadgpt.network.source import map_in, read_sources
 
     asked = {"--route": route, "--from": start, "--to": goal, "--random-routes": count}
     given = [flag for flag, value in asked.items() if value is not None]
-    is_map = file.suffix.lower() == ".xodr" and wanted is None
-    if (found_map := map_in(file) if is_map else None) is not None:
+    if (found_map := map_in(file) if wanted is None and is_map_file(file) else None) is not None:
         if len(given) > 1 and given != ["--from", "--to"]:
             raise UsageError(f"{' and '.join(given)} ask for different routes; give one of them")
         ways = _routes(found_map, route, (start, goal), count, seed)
@@ -405,6 +404,7 @@ def _write(
     from roadgpt.check.describing import describe
     from roadgpt.check.measures import ups_and_downs
     from roadgpt.network import network_of, only_road, road_from_json
+    from roadgpt.network.maps import is_map_file
     from roadgpt.road import Road, World
 
     assert isinstance(source.blueprint, Road)
@@ -414,7 +414,7 @@ def _write(
     too_short = plugins.find("rules", "too_short")
     is_only = only_road(road, own) is not None
     found = too_short(network_of(road, own), road, None, own) if is_only else ()
-    if file.suffix.lower() == ".xodr" and "speed_limit" not in world:
+    if is_map_file(file) and "speed_limit" not in world:
         usual = own.limits.speed_limit * 3.6
         told += (
             f"it states no speed limit; it is driven at {usual:g} km/h at most, or as --speed-limit says",

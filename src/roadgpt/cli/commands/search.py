@@ -225,6 +225,7 @@ def _given(plan: "Plan", told: Set[str], quiet: bool) -> "tuple[Plan, list[bytes
     from roadgpt.campaign.given import kept_road
     from roadgpt.campaign.model import GIVEN
     from roadgpt.network import made_from
+    from roadgpt.network.maps import is_map_file
     from roadgpt.network.source import OF_FILE
     from roadgpt.reading import digest
 
@@ -237,7 +238,7 @@ def _given(plan: "Plan", told: Set[str], quiet: bool) -> "tuple[Plan, list[bytes
             with named_in_errors(said):
                 blueprint, world, more = source_of(said, plan.world, told)
                 if not made_from(blueprint, world, plan.geometry).has_way:
-                    how = command_line("import", said if said.endswith(".xodr") else "MAP.xodr")
+                    how = command_line("import", said if is_map_file(Path(said)) else "MAP.xodr")
                     raise UsageError(
                         f"{said} is a map without a route, on which nothing can be driven; to make routes: "
                         f"{how} --random-routes 20 --out FOLDER"

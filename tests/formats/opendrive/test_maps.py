@@ -10,9 +10,8 @@ from shapely import GeometryCollection, LineString, MultiPolygon, box, points
 
 from roadgpt import judge, simulate
 from roadgpt.errors import UsageError
-from roadgpt.network import Leg, Route, road_from_json
+from roadgpt.network import ImportedMap, Leg, Route, read_map, road_from_json
 from roadgpt.network.lanes import lanes_of
-from roadgpt.network.opendrive import ImportedMap, read_map
 from roadgpt.network.paved import filled
 from roadgpt.network.routing import between, over_roads, random_routes
 from roadgpt.road import World

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import inf
 from pathlib import Path
 from xml.etree.ElementTree import Element
@@ -11,69 +11,23 @@ import numpy as np
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry.elevation import closed
+from roadgpt.network.maps import ImportedRoad, world_values
 from roadgpt.network.network import Leg, Network, NetworkRoad
-from roadgpt.network.opendrive.junctions import tell_unread
-from roadgpt.network.opendrive.roads import (
-    FileRoad,
-    RoadBuilder,
-    left_out,
-    limited,
-    read_road,
-    unread,
-    world_values,
-)
-from roadgpt.network.opendrive.tree import DRIVING, NUMBER, MapRemarks, read_tree
 from roadgpt.network.road_or_route import ONLY
 from roadgpt.network.route import Route
 from roadgpt.network.stretch import turned
 from roadgpt.road import Profile, Road
 from roadgpt.road.profile import Marking, as_cubics
 from roadgpt.road.world import LANE_WIDTHS
+from roadgpt_formats.opendrive.junctions import tell_unread
+from roadgpt_formats.opendrive.roads import FileRoad, RoadBuilder, file_road, left_out, limited, unread
+from roadgpt_formats.opendrive.tree import DRIVING, NUMBER, MapRemarks, read_tree
 
 PLACES = 1_000  # stations at which widths are sampled
 
 
-@dataclass(frozen=True)
-class ImportedRoad:
-    """A road that was read from an OpenDRIVE file, with its lane width, speed limit and friction."""
-
-    road: Road
-    """The road, or a Route where traffic drives on the left. Its ``profile`` is None if the file describes a
-    cross-section like the default one of a World: one lane in each direction, both of the same constant
-    width, with shoulders of equal constant width and the default markings, for traffic on the right."""
-    id: str
-    name: str
-    lane_width: float  # width of the driven lane in metres; the median if it varies
-    shoulder: float  # width in metres of the shoulder on the right; the median if it varies
-    speed_limit: float | None
-    """Speed limit in m/s, limited to 5 to 300 km/h; None if the file gives no speed limit."""
-    friction: float | None  # friction coefficient of the driven lane, up to 2; None if the file gives none
-    remarks: tuple[str, ...]  # sentences about contents of the file that were changed, replaced or left out
-
-    @property
-    def world_values(self) -> dict[str, float]:
-        """The fields of a World that the file states, by name: no lane width and shoulder if ``road.profile``
-        is not None, which defines them."""
-        told = {"speed_limit": self.speed_limit, "friction": self.friction}
-        told |= {"limit_stated": False if self.speed_limit is None else None}
-        if self.road.profile is None:
-            told |= {"lane_width": self.lane_width, "shoulder": self.shoulder}
-        return {name: value for name, value in told.items() if value is not None}
-
-
-def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:
-    """Returns one road of an OpenDRIVE file. Its centre line is the reference line of the file.
-
-    Args:
-        path: The file.
-        road: Id of the road. None selects the longest road that has a driving lane and is not part of a
-            junction. If there is no such road, None selects the longest road with a driving lane. If no road
-            has a driving lane, None selects the longest road outside junctions or, if there is none, the
-            longest road.
-
-    Raises:
-        UsageError: The file cannot be read or is too large, there is no such road, or an element is unknown
-            or invalid; the message names the element."""
+def read_road(path: Path, road: str | None) -> ImportedRoad:
+    """Returns one road of a file; see ``roadgpt.network.read_opendrive``."""
     found: list[tuple[tuple[bool, bool, float], Element, Counter[str]]] = []
 
     def wants(tag: str, attributes: Mapping[str, str]) -> bool:
@@ -88,7 +42,7 @@ def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:
             found[:] = [(rank, node, passed)]
 
     try:
-        ids, header = read_tree(Path(path), take, wants)
+        ids, header = read_tree(path, take, wants)
         if not found:
             told = ", ".join(ids[:12]) + (", ..." if len(ids) > 12 else "")
             raise UsageError(f"there is no road {road} in it; there are: {told}")
@@ -100,7 +54,7 @@ def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:
         if road is None and len(ids) > 1:
             which = f"the longest of {len(ids)} with a driving lane"
             remarks.add(f"road {id_} is taken, {which}; use --road ID for another", "")
-        file = read_road(node, remarks)
+        file = file_road(node, remarks)
         if file is None:
             kinds = {lane.get("type", "?") for lane in node.findall("lanes/laneSection/*/lane")} - {"none"}
             told = ", ".join(sorted(kinds)[:6]) or "none"

@@ -20,13 +20,13 @@ from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, ElevationProfile, GradeProfile
 from roadgpt.geometry.elevation import SHORTEST, Row, closed, constant, shifted, value_at
 from roadgpt.network.lane_along import added
-from roadgpt.network.opendrive.line import PlacedLine, placed_line
-from roadgpt.network.opendrive.tree import DRIVING, MapRemarks, cubics, in_order, number
+from roadgpt.network.maps import said_of
 from roadgpt.network.stretch import turned
 from roadgpt.road import Profile, Road
 from roadgpt.road.profile import FASTEST, LINE, MOST_LANES, STEEPEST, WIDEST, Kind, LaneStrip, Marking, Width
 from roadgpt.road.road import check_grade
-from roadgpt.road.world import FRICTIONS, SPEEDS
+from roadgpt_formats.opendrive.line import PlacedLine, placed_line
+from roadgpt_formats.opendrive.tree import DRIVING, MapRemarks, cubics, in_order, number
 
 SHORT = 0.05  # m; a shorter lane section is left out, and the lanes before it go on in those behind it
 NO_WIDTH = 1e-3  # m; a lane that is nowhere wider is left out
@@ -165,7 +165,7 @@ class FileRoad:
         return {(own, sign * there) for own, there in self.links[0 if contact == "start" else 1]}
 
 
-def read_road(node: Element, remarks: MapRemarks) -> FileRoad | None:
+def file_road(node: Element, remarks: MapRemarks) -> FileRoad | None:
     """Returns a road of the file, or None if it has no lane that cars may use. Raises UsageError if its line
     or its lanes cannot be read."""
     road_id = node.get("id", "?")[:40]
@@ -266,28 +266,6 @@ def left_out(passed: Counter[str], others: Iterable[str], header: Iterable[str])
     parts = [f"{count:,} {what}{'s' * (count > 1 and what[-1] != '>')}" for what, count in passed.items()]
     parts += [*others, *(f"<{name}> of the map" for name in header)]
     return (f"left out: {', '.join(sorted(parts))}",) if parts else ()
-
-
-def world_values(lanes: Sequence[tuple[float, LaneStrip]]) -> tuple[dict[str, float], tuple[str, ...]]:
-    """Returns the speed limit in m/s and the friction that hold on most metres of lanes, each given with its
-    length, as the fields of a World; see ``ImportedMap.world_values``."""
-    found, remarks = dict[str, float](), list[str]()
-    for name, limits in (("speed_limit", SPEEDS), ("friction", FRICTIONS)):
-        what, metres = name.replace("_", " "), Counter[float]()
-        for length, lane in lanes:
-            if (value := getattr(lane, name)) is not None:
-                metres[value] += length  # type: ignore[assignment]
-        if not metres:
-            continue
-        most = max(metres, key=lambda value: (metres[value], value))
-        found[name] = min(max(most, limits[0]), limits[1])
-        least, largest, used = (said_of(what, value) for value in (min(metres), max(metres), found[name]))
-        if len(metres) > 1:
-            both = f"{least.removesuffix(' km/h')} to {largest}"
-            remarks.append(f"its {what} is {both}; {used} is used everywhere")
-        elif found[name] != most:
-            remarks.append(f"its {what} of {least} is taken as {used}")
-    return found, tuple(remarks)
 
 
 def _jump(heights: CubicProfile, length: float) -> str:
@@ -421,13 +399,6 @@ def _usable(value: float, what: str, remarks: MapRemarks, where: str) -> float |
     said = said_of(what, value) if value else f"0{', or of no limit,' * (what == 'speed limit')}"
     remarks.add(f"a {what} of {said} is not used", where)
     return None
-
-
-def said_of(what: str, value: float | None) -> str:
-    """Returns a speed limit in m/s, or a friction, in words."""
-    if value is None:
-        return "none"
-    return f"{value * 3.6:.4g} km/h" if what == "speed limit" else f"{value:.4g}"
 
 
 def combined(parts: Sequence[tuple[float, CubicProfile]], start: float, end: float) -> list[Row]:

@@ -17,9 +17,9 @@ from hypothesis import strategies as st
 
 from roadgpt.errors import UsageError
 from roadgpt.network import ImportedRoad, read_opendrive
-from roadgpt.network.opendrive.roads import UNREAD
-from roadgpt.network.opendrive.tree import COUNTED, DRIVING, READ, SILENT
 from roadgpt.road import Profile, World
+from roadgpt_formats.opendrive.roads import UNREAD
+from roadgpt_formats.opendrive.tree import COUNTED, DRIVING, READ, SILENT
 
 LENGTH = 200.0
 LINE = '<geometry s="0" x="0" y="0" hdg="0" length="200"><line/></geometry>'

@@ -143,7 +143,10 @@ def read_tree(
 
 def count_roads(path: Path) -> int:
     """Returns the number of roads in a file; raises UsageError as ``read_tree`` does."""
-    return len(read_tree(path, lambda node, passed: None, lambda tag, attributes: False)[0])
+    try:
+        return len(read_tree(path, lambda node, passed: None, lambda tag, attributes: False)[0])
+    except UsageError as error:
+        raise UsageError(f"{path}: {error}") from error
 
 
 def _read(path: Path, reader: "_Reader") -> None:

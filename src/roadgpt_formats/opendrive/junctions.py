@@ -34,8 +34,8 @@ from roadgpt.network.network import (
     Roundabout,
     kinds_of,
 )
-from roadgpt.network.opendrive.roads import UNLINKED, FileRoad, OneWay, RoadBuilder
-from roadgpt.network.opendrive.tree import MapRemarks, number
+from roadgpt_formats.opendrive.roads import UNLINKED, FileRoad, OneWay, RoadBuilder
+from roadgpt_formats.opendrive.tree import MapRemarks, number
 
 PARALLEL = 30.0  # degrees; arms that are closer together belong to a merge or an exit
 BEFORE = 60.0  # m before a junction, within which a sign or a light applies to it

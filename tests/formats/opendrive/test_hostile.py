@@ -15,7 +15,7 @@ from exported import ROADS, WORLD
 from roadgpt.errors import UsageError
 from roadgpt.export.exporters.opendrive import document
 from roadgpt.network import read_opendrive
-from roadgpt.network.opendrive import tree
+from roadgpt_formats.opendrive import tree
 
 SOUND = document(ROADS["arcs"], WORLD).to_text()
 BODY = SOUND.split("?>", 1)[1]

@@ -8,8 +8,7 @@ import pytest
 from network.random_designs import random_design, random_lanes_design, random_turn_lanes_design
 from network.random_maps import map_route
 from roadgpt.export import exporter_of
-from roadgpt.network import Network, Route, build_route
-from roadgpt.network.opendrive import read_map
+from roadgpt.network import Network, Route, build_route, read_map
 from roadgpt.road import World, read_design
 
 CASES = [

@@ -16,10 +16,11 @@ from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, Piece, PieceCurve, project, wrap_angle
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.elevation import ROUNDING, Cubic, Row, closed
-from roadgpt.geometry.fitting import SampledLine, clothoids, fitted, misses, smoothed, turns_back
+from roadgpt.geometry.fitting import SampledLine, clothoids, fitted
 from roadgpt.geometry.pieces import advance
-from roadgpt.network.opendrive.tree import MapRemarks, number
 from roadgpt.road.road import check_length
+from roadgpt_formats.opendrive.rounding import misses, smoothed, turns_back
+from roadgpt_formats.opendrive.tree import MapRemarks, number
 
 KNOWN = ("line", "arc", "spiral", "poly3", "paramPoly3")
 SHORTEST = 1e-3  # m; shorter elements are merged with the previous ones

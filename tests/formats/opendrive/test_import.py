@@ -14,8 +14,7 @@ from roadgpt.errors import UsageError
 from roadgpt.export import save
 from roadgpt.export.exporters.opendrive import document
 from roadgpt.geometry import GradeProfile
-from roadgpt.network import ImportedRoad, read_opendrive, read_source
-from roadgpt.network.opendrive import read_map
+from roadgpt.network import ImportedRoad, read_map, read_opendrive, read_source
 from roadgpt.road import Road, World, build
 from strategies import designs
 from tables import rows
