@@ -6,7 +6,6 @@ import sys
 from collections.abc import Sequence
 from difflib import get_close_matches
 from importlib import import_module
-from keyword import iskeyword
 from typing import Any
 
 import click
@@ -41,7 +40,6 @@ HEADINGS = {
     },
     "Exchange": {
         "export": "Write roads for other tools: OpenDRIVE, OpenSCENARIO and others.",
-        "import": "Read a road from an OpenDRIVE file.",
         "ground": "Make land from words, or read heights from a file, for roads to lie in.",
     },
     "Set up": {
@@ -100,7 +98,7 @@ class Commands(click.Group):
         found: click.Command | None = None
         if heading:
             module = import_module(f"roadgpt.cli.commands.{heading.lower().replace(' ', '_')}")
-            found = getattr(module, f"{name}_" if iskeyword(name) else name)
+            found = getattr(module, name)
         elif name in commands():
             found = plugins.find("commands", name)
         return found

@@ -758,6 +758,17 @@ def drawing_of(formats: Any, axes: Any = "equal") -> "Drawing | None":
     return Drawing(axes, formats)
 
 
+def point(text: str) -> tuple[float, float]:
+    """Returns the point that a text such as 120,45.5 names, in metres."""
+    try:
+        x, y = map(float, text.split(","))
+    except ValueError as error:
+        raise UsageError(f"'{text[:40]}' is no point; give x and y in metres, such as 120,45.5") from error
+    if not (isfinite(x) and isfinite(y)):
+        raise UsageError(f"'{text[:40]}' is not finite; give x and y in metres, such as 120,45.5")
+    return x, y
+
+
 def endings() -> tuple[str, ...]:
     """Returns the endings of road files; those of maps are the names of plug-ins."""
     return (*ENDINGS, *(f".{name}" for name in plugins.names("maps")))
