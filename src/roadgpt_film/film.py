@@ -32,7 +32,7 @@ from roadgpt.scene import Camera, Mount, Pose, Scenery
 from roadgpt.traffic.actor import bodies
 from roadgpt.verdict import percent, severity
 from roadgpt.verdict.oracle import margins
-from roadgpt_formats.calm_driver import calm_speed
+from roadgpt_formats.ego import calm_speed
 
 COLUMNS = ("x", "y", "z", "heading", "pitch", "roll", "steer", "speed", "brake")
 STEP = 0.02  # s, time step of a trip along a road that was not driven

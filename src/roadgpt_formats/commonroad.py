@@ -23,7 +23,7 @@ from roadgpt.network import Arm, Connection, Junction, Leg, Network, legs_of, ne
 from roadgpt.network.markings import gives_way_to_ring, line_to_stop_at, place_of_sign
 from roadgpt.road import Road, World
 from roadgpt.road.profile import Marking
-from roadgpt_formats.calm_driver import calm_speed
+from roadgpt_formats.ego import calm_speed
 from roadgpt_formats.lanelets import Lanelet, arms_of, lanelets_of
 
 STEP = 0.1  # s

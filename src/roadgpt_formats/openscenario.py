@@ -22,7 +22,6 @@ from roadgpt.export.ego import (
     Poses,
     Trajectories,
     goal_of,
-    on_the_ground,
     start_of,
 )
 from roadgpt.export.exporters.opendrive import OpenDrive
@@ -33,7 +32,7 @@ from roadgpt.language.names import ActorKind
 from roadgpt.language.table import ROAD_USERS, WEATHER, RoadUser
 from roadgpt.network import RoadEnd, legs_of, network_of, only_road
 from roadgpt.road import Road, World
-from roadgpt_formats.calm_driver import SpeedProfile, calm_profile
+from roadgpt_formats.ego import SpeedProfile, calm_profile, on_the_ground
 from roadgpt_formats.recorded_scenario import EGO, key_of, while_moving
 
 DATE = "2026-01-01T00:00:00"  # the same in every file, so that the same road gives the same bytes; midnight

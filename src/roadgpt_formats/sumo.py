@@ -22,7 +22,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road import Profile, Road, World
 from roadgpt.road.edges import line, stations
 from roadgpt.road.profile import Width
-from roadgpt_formats.calm_driver import PULL, calm_speeds
+from roadgpt_formats.ego import PULL, calm_speeds
 
 PATIENCE = 120.0  # s, for netconvert
 PRECISION = 4  # decimals of a metre in a network

@@ -25,7 +25,8 @@ from roadgpt import plugins
 from roadgpt.errors import UsageError
 from roadgpt.provenance import CODE, USER
 
-RECORDINGS = (".csv", *plugins.names("recordings"))  # suffixes of files with recorded tracks
+# suffixes of files with recorded tracks
+RECORDINGS = (".csv", *(f".{name}" for name in plugins.names("recordings")))
 WRITTEN = "written by the driver"
 """Stands for the content of a file that the driver also writes, so that it differs at any time."""
 WITH_SETTINGS = re.compile(r"(.+\.py(?::\w+)?|[^:]+):(\w+=.*)", re.DOTALL)

@@ -119,15 +119,3 @@ def start_of(road: Road) -> float:
 def goal_of(road: Road) -> float:
     """Returns the station in metres at which a drive ends. It is always greater than ``start_of``."""
     return max(road.length - GOAL, (start_of(road) + road.length) / 2)
-
-
-def on_the_ground(poses: Poses, ahead: float) -> Array:
-    """Returns, for each pose, the point on the ground ``ahead`` metres in front of the car's centre of
-    gravity, as an array ``(n, 3)``."""
-    h, p, r = poses.heading, poses.pitch, poses.roll
-    forward = np.stack([np.cos(h) * np.cos(p), np.sin(h) * np.cos(p), np.sin(p)], axis=-1)
-    left = np.stack([-np.sin(h), np.cos(h), np.zeros_like(h)], axis=-1)
-    level_up = np.cross(forward, left)
-    up = level_up * np.cos(r)[:, None] - left * np.sin(r)[:, None]
-    centre = np.stack([poses.x, poses.y, poses.z], axis=-1)
-    return np.asarray(centre + ahead * forward - CAR.gravity_height * up)

@@ -1,5 +1,5 @@
 """Reads recordings of how others moved: tables (.csv), and files that plug-ins of the kind ``recordings``
-read, each named after their suffix.
+read, each named after the ending of its files.
 
 A table has one row for each actor and moment, in any order, with the columns of ``RecordedRow``. The "Ego" of
 any is the tested car and is not replayed.
@@ -127,13 +127,14 @@ def read_recording(path: Path) -> Recording:
 
 @lru_cache(maxsize=2)  # the roads of a folder of runs are driven with the same file
 def _read(path: Path, *_state: int) -> Recording:
-    if path.suffix not in (".csv", *plugins.names("recordings")):
+    ending = path.suffix[1:]
+    if ending != "csv" and ending not in plugins.names("recordings"):
         raise UsageError(
             f"{path} is no recording of others; give a table (.csv) or an OpenSCENARIO file (.xosc)"
         )
     try:
         content = read_bytes(path, what="a recording of others")
-        found, told = _table(content) if path.suffix == ".csv" else _by_plugin(path.suffix, content)
+        found, told = _table(content) if ending == "csv" else _by_plugin(ending, content)
     except UsageError as error:
         raise UsageError(f"{path}: {error}" if str(path) not in str(error) else str(error)) from error
     except OSError as error:
@@ -165,8 +166,8 @@ def _staying(rows: FloatArray, before: bool = True, after: bool = True) -> Float
     return rows
 
 
-def _by_plugin(suffix: str, content: bytes) -> Found:
-    found, told = plugins.find("recordings", suffix)(content)
+def _by_plugin(ending: str, content: bytes) -> Found:
+    found, told = plugins.find("recordings", ending)(content)
     return {who.name: (who, _staying(rows, before=False, after=stays)) for who, rows, stays in found}, told
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from xml.etree.ElementTree import Element
 
 from roadgpt.errors import UsageError
-from roadgpt.network.maps import ImportedMap
+from roadgpt.network import ImportedMap
 from roadgpt.network.network import MOST_ROADS
 from roadgpt_formats.opendrive.junctions import Joining
 from roadgpt_formats.opendrive.one_road import read_road

@@ -19,21 +19,19 @@ import numpy as np
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Point, wrapped
 from roadgpt.language.names import Control
-from roadgpt.network.markings import CROSSWALK, STOP_LINE, line_before
-from roadgpt.network.network import (
-    OTHER_CONTACT,
+from roadgpt.network import (
     Arm,
     Connection,
     Continuation,
     Junction,
-    Kind,
     LaneLink,
     Network,
     NetworkRoad,
     RoadEnd,
     Roundabout,
-    kinds_of,
 )
+from roadgpt.network.markings import CROSSWALK, STOP_LINE, line_before
+from roadgpt.network.network import OTHER_CONTACT, Kind, kinds_of
 from roadgpt_formats.opendrive.roads import UNLINKED, FileRoad, OneWay, RoadBuilder
 from roadgpt_formats.opendrive.tree import MapRemarks, number
 

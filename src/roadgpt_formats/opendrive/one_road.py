@@ -11,10 +11,9 @@ import numpy as np
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry.elevation import closed
-from roadgpt.network.maps import ImportedRoad, world_values
-from roadgpt.network.network import Leg, Network, NetworkRoad
+from roadgpt.network import ImportedRoad, Leg, Network, NetworkRoad, Route
+from roadgpt.network.maps import world_values
 from roadgpt.network.road_or_route import ONLY
-from roadgpt.network.route import Route
 from roadgpt.network.stretch import turned
 from roadgpt.road import Profile, Road
 from roadgpt.road.profile import Marking, as_cubics

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from pathlib import Path
 
+from roadgpt import plugins
 from roadgpt.export.ego import Poses
-from roadgpt.export.exporters.gltf import land_meshes, to_bytes
 from roadgpt.export.exporters.opendrive.boundaries import boundary
 from roadgpt.export.exporters.opendrive.lanes import LaneLinks, RoadParts, lateral_profile
 from roadgpt.export.exporters.opendrive.reference_line import Start, bounds_of, geometries, reaches, starts_of
@@ -48,7 +48,8 @@ class OpenDrive:
         ``poses`` is ignored, because OpenDRIVE cannot hold a drive."""
         path.write_bytes(document(road, world, self.revision).to_text().encode())
         if world.has_ground:
-            path.with_suffix(GROUND).write_bytes(to_bytes(land_meshes(road, world), road.at(0.0)))
+            land = plugins.find("exporters", "gltf")().land(road, world)
+            path.with_suffix(GROUND).write_bytes(land)
         path.with_suffix(ROUTE).write_text(json.dumps({"route": legs_of(road, world)}) + "\n")
 
 

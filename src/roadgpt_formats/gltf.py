@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from PIL import Image
 
-from roadgpt.export.ego import Poses, goal_of, on_the_ground, start_of
+from roadgpt.export.ego import Poses, goal_of, start_of
 from roadgpt.geometry.curve import Array
 from roadgpt.ground.mesh import GroundMesh, mesh_of, water_of
 from roadgpt.network import Network, NetworkRoad, network_of, only_road
@@ -31,6 +31,7 @@ from roadgpt.network.surface import JunctionSurface, NetworkSurface, stations_of
 from roadgpt.road import Profile, Road, World
 from roadgpt.road.edges import line, named_lines, normals
 from roadgpt.road.profile import DASH, GAP
+from roadgpt_formats.ego import on_the_ground
 
 THICKNESS = 0.5  # m, thickness of the slabs
 PAINT = 0.005  # m by which markings lie above the road; less would flicker at a coarse depth resolution
@@ -73,8 +74,6 @@ GRAINS = {
     "gravel": Grain(4.0, 17, ((64, 0.30), (256, 0.40))),
     "grass": Grain(37.0, 23, ((24, 0.10), (64, 0.16), (256, 0.22))),
 }
-
-
 """Textures by material. Their sizes and amplitudes are also used by the HTML page that replays a drive."""
 
 
@@ -109,6 +108,10 @@ class Gltf:
 
         It shows the path of the drive, or the middle of the right lane if there is no drive."""
         path.write_bytes(to_bytes(meshes(road, world, poses), road.at(0.0)))
+
+    def land(self, road: Road, world: World) -> bytes:
+        """Returns a scene of the land around a road alone, for formats that do not hold it."""
+        return to_bytes(land_meshes(road, world), road.at(0.0))
 
 
 def meshes(road: Road, world: World, poses: Poses | None = None) -> list[TriangleMesh]:

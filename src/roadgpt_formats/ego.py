@@ -1,10 +1,11 @@
-"""Plans the speeds of a calm driver, for files that tell a car how fast to drive."""
+"""Plans the speeds at which files let the tested car drive, those of a calm driver, and says where it touched
+the ground in a drive."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from roadgpt.export.ego import start_of
+from roadgpt.export.ego import CAR, Poses, start_of
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 from roadgpt.road.speed_profile import GRAVITY, DrivingLimits, lane_speed
@@ -53,3 +54,15 @@ def calm_profile(road: Road, world: World, first: float = 0.0) -> SpeedProfile:
     along = step * (stretch[1:] + stretch[:-1]) / 2
     speed = np.minimum(speed, np.sqrt(first**2 + 2 * pull * GRAVITY * np.r_[0.0, np.cumsum(along)]))
     return SpeedProfile(speed, np.r_[0.0, np.cumsum(2 * along / (speed[1:] + speed[:-1]))])
+
+
+def on_the_ground(poses: Poses, ahead: float) -> Array:
+    """Returns, for each pose, the point on the ground ``ahead`` metres in front of the car's centre of
+    gravity, as an array ``(n, 3)``."""
+    h, p, r = poses.heading, poses.pitch, poses.roll
+    forward = np.stack([np.cos(h) * np.cos(p), np.sin(h) * np.cos(p), np.sin(p)], axis=-1)
+    left = np.stack([-np.sin(h), np.cos(h), np.zeros_like(h)], axis=-1)
+    level_up = np.cross(forward, left)
+    up = level_up * np.cos(r)[:, None] - left * np.sin(r)[:, None]
+    centre = np.stack([poses.x, poses.y, poses.z], axis=-1)
+    return np.asarray(centre + ahead * forward - CAR.gravity_height * up)
