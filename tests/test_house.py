@@ -29,7 +29,12 @@ ANNEXES = (
     "roadgpt_search",
     "roadgpt_study",
 )
-FEW = {"roadgpt_edit": 107, "roadgpt_film": 25, "roadgpt_sbft": 58}  # names of roadgpt that each may import
+FEW = {
+    "roadgpt_edit": 107,
+    "roadgpt_film": 25,
+    "roadgpt_formats": 150,
+    "roadgpt_sbft": 58,
+}  # names of roadgpt that each may import
 HALLWAY = {
     "compiled", "errors", "plugins", "plural", "provenance", "reading", "settings", "children", "stopping",
 }  # fmt: skip

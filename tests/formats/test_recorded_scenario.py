@@ -8,6 +8,8 @@ import pytest
 
 from exported import ROADS, WORLD
 from roadgpt.errors import UsageError
+from roadgpt.run import Setup
+from roadgpt.run.versions import versions_of
 from roadgpt.traffic import STEP
 from roadgpt.traffic.recording import Recording, read_recording
 
@@ -136,3 +138,9 @@ def test_a_wrong_scenario_costs_one_sentence(tmp_path: Path, text: str, why: str
     with pytest.raises(UsageError) as error:
         read(tmp_path, text)
     assert why in str(error.value)
+
+
+def test_a_test_with_such_a_recording_records_what_read_it() -> None:
+    """Tables are read by RoadGPT itself."""
+    said = [versions_of([Setup(tracks=f"others.{ending}")])["plug-ins"] for ending in ("xosc", "csv")]
+    assert ["roadgpt_formats" in each for each in said] == [True, False]

@@ -58,6 +58,7 @@ def versions_of(setups: Sequence[Setup], driver: Any = None, generators: Iterabl
     used = {("generators", name) for name in generators}
     used |= {(kind, name) for kind in ("rules", "columns") for name in plugins.names(kind)}
     found |= {f"tracks {Path(its.tracks).name}": digest(Path(its.tracks)) for its in driven if its.tracks}
+    used |= {("recordings", Path(its.tracks).suffix[1:]) for its in driven}
     for its in setups:
         reader, _, place = its.reader.partition(":")
         weights = Path(place or Path(brief.__file__).parent / "readers" / "model" / "weights")
