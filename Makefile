@@ -56,7 +56,7 @@ demo: $(VENV)/.installed
 	@echo "Now call it with: $(BIN)/roadgpt run \"a winding road downhill\" -n 5"
 	@echo "or once 'source $(BIN)/activate', then everywhere: roadgpt run ..."
 
-# The simulator and the camera are compiled once, beside the check of types; each worker and process would compile anew.
+# The simulator, the camera and the tests are compiled once, beside the check of types; each worker would do it anew.
 test: export PYTHONDONTWRITEBYTECODE =
 # More threads of BLAS than one, in three workers on two cores, spend their time waiting for each other.
 test: export OPENBLAS_NUM_THREADS = 1
@@ -65,7 +65,8 @@ test: $(VENV)/.installed-test judges/.installed judges/.browser
 	$(BIN)/python -m ruff format --check .
 	{ $(BIN)/python -m roadgpt run "a road" --scene light --seed 1 --out "$$(mktemp -d)/compiled" && \
 	  $(BIN)/python -m roadgpt run "a straight road of 25 m" --no-plot --out "$$(mktemp -d)/seen" \
-	    --driver examples/vision/small_network.py:SmallNetwork; } > /dev/null & \
+	    --driver examples/vision/small_network.py:SmallNetwork && \
+	  $(BIN)/python -m pytest -q --collect-only; } > /dev/null & \
 	  $(BIN)/python -m mypy && wait $$!
 	$(BIN)/python -m pytest -n 3 --dist worksteal --durations 10
 	@echo "make test: $(SECONDS_SO_FAR) s"

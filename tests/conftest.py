@@ -21,7 +21,7 @@ from named_files import watch_commands
 from roadgpt import provenance
 from roadgpt.campaign.workers import InProcess
 
-settings.register_profile("steady", derandomize=True, deadline=None, max_examples=20)
+settings.register_profile("steady", derandomize=True, deadline=None, max_examples=12)
 settings.register_profile("hunt", deadline=None, print_blob=True)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "steady"))
 

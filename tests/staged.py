@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from roadgpt.drive import COLUMNS, Box, Columns, Drive
 from roadgpt.drive.lane_position import LanePolygon
+from roadgpt.geometry.boxes import corners
 from roadgpt.road import Road, World
 from roadgpt.traffic import STEP, Actor, Tracks
 from roadgpt.traffic.actor import SIZES, rounded
@@ -38,8 +39,14 @@ def driven(motion: Motion, duration: float, road: Road | None = None, ended: str
         return made
     columns["s"], columns["t"] = road.locate(x, y)
     lane = LanePolygon.along(road, World())
-    columns["outside"] = np.array([lane.outside(made.corners(i), columns["s"][i]) for i in range(len(time))])
+    columns["outside"] = shares_outside(made, lane, columns["s"])
     return replace(made, columns=Columns(columns))
+
+
+def shares_outside(drive: Drive, lane: LanePolygon, stations: NDArray[np.float64]) -> NDArray[np.float64]:
+    """What ``lane.outside`` says of each sample of a drive, whose boxes are worked out all at once."""
+    boxes = corners(drive.middles[:, :2], drive["heading"], np.array([drive.car.length, drive.car.width]))
+    return np.array([lane.outside(box, s) for box, s in zip(boxes, stations, strict=True)])
 
 
 def tracks(duration: float, **motions: tuple[str, Motion]) -> Tracks:

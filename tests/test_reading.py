@@ -100,7 +100,7 @@ def test_toml_that_would_break_the_machine_is_told(
         "ALTER TABLE meta RENAME TO old; CREATE VIEW meta AS WITH RECURSIVE each(name) AS (SELECT 1 UNION "
         "ALL SELECT name + 1 FROM each) SELECT name, NULL AS value FROM each",
         "CREATE TRIGGER own AFTER INSERT ON tests BEGIN DELETE FROM tests; END",
-        "UPDATE cells SET cell = zeroblob(900000000)",
+        "UPDATE cells SET cell = zeroblob(300000000)",
     ],
     ids=["a view without end", "a trigger", "a large value"],
 )

@@ -8,6 +8,7 @@ from shapely.affinity import translate
 from shapely.geometry import LineString, Polygon
 
 from drive.slippery_bicycle import BOX, SlipperyBicycle
+from grids import pairs
 from roadgpt.drive import COLUMNS, Columns, Drive
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.road import Design, Limits, Road, Segment, World, build
@@ -45,9 +46,7 @@ def random_drive(road: Road, seed: int, n: int = 60) -> Drive:
     return Drive("none", "shapely", 0, Columns(columns), "timeout", BOX)
 
 
-@pytest.mark.parametrize("tolerance", [0.5, 0.85, 0.95])
-@pytest.mark.parametrize("hand", [-1, 1])
-@pytest.mark.parametrize("radius", [15.0, 40.0])
+@pytest.mark.parametrize(("tolerance", "hand", "radius"), pairs((0.5, 0.85, 0.95), (-1, 1), (15.0, 40.0)))
 def test_moved_by_the_margin_the_car_is_at_the_tolerance(radius: float, hand: int, tolerance: float) -> None:
     road, world = bent(radius, hand), World(limits=Limits(oob_tolerance=tolerance))
     lane, drive = lane_of(road), random_drive(bent(radius, hand), seed=3)

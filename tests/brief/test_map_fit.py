@@ -4,6 +4,7 @@ reader and language; and words and plans give its size.
 
 import pytest
 
+from grids import diagonal
 from roadgpt.brief import Brief, Clause, check, exactly, read
 from roadgpt.brief.expressions import said_map_size
 from roadgpt.brief.plan import plan, read_plan
@@ -28,11 +29,10 @@ def test_a_long_road_is_read_where_the_map_is_large(words: str, metres: float, i
     assert brief.words == words
 
 
-@pytest.mark.parametrize(("words", "metres", "is_straight"), LONG)
-@pytest.mark.parametrize("size", [100, 250])
-def test_and_refused_where_it_is_small(words: str, metres: float, is_straight: bool, size: float) -> None:
+@pytest.mark.parametrize(("row", "size"), diagonal(LONG, [100, 250]))
+def test_and_refused_where_it_is_small(row: tuple[str, float, bool], size: float) -> None:
     with pytest.raises(BriefError, match=f"map of {size} m"):
-        read(words, map_size=size)
+        read(row[0], map_size=size)
 
 
 def test_the_tightest_turn_is_that_of_the_world() -> None:

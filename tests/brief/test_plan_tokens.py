@@ -38,7 +38,7 @@ def normal(line: str) -> str:
 
 
 @pytest.mark.parametrize(
-    ("paths", "every", "whole"), [(CHANGES, 40, change_request), (OF_SCENES, 4, any_change)]
+    ("paths", "every", "whole"), [(CHANGES, 120, change_request), (OF_SCENES, 12, any_change)]
 )
 def test_plans_of_changes_survive_being_cut_into_tokens(
     paths: Sequence[Path], every: int, whole: Callable[[Numbers], Symbol]

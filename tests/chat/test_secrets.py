@@ -21,6 +21,7 @@ from chat.stub_server import (
     says,
     send,
 )
+from grids import diagonal
 from roadgpt.chat import ChatError, ChatSettings, Message, open_chat
 from roadgpt.chat.config import Key, redacted
 from roadgpt.cli import app
@@ -86,8 +87,7 @@ def loud(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> p
     return caplog
 
 
-@pytest.mark.parametrize("path", PATHS)
-@pytest.mark.parametrize("part", ["--designer=asker", "--reader=chat"])
+@pytest.mark.parametrize(("path", "part"), diagonal([*PATHS], ["--designer=asker", "--reader=chat"]))
 def test_no_path_tells_the_key(
     stub: StubServer,
     monkeypatch: pytest.MonkeyPatch,

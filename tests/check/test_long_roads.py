@@ -41,6 +41,8 @@ def test_overlap_is_found_or_ruled_out_soon_and_in_little_memory(name: str) -> N
     found = findings("no_overlap", road, WORLD)
     assert time.process_time() - begun < SECONDS  # 0.04 s on the machine it was written on
     assert bool(found) == overlaps
+    if name not in ("to and fro", "round and round"):  # what it takes is counted slowly
+        return
     tracemalloc.start()
     inspect(Road(plan, road.elevation), None, WORLD)
     sbft_verdict(road.control_points(), WORLD.site.map_size)

@@ -112,7 +112,7 @@ def test_a_road_is_inside_the_map_where_all_its_edge_points_are(
 @given(
     st.lists(gentle, min_size=1, max_size=4), st.floats(-math.pi, math.pi), st.floats(0, 2), st.floats(0, 2)
 )
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=80, deadline=None)
 def test_what_strict_lets_pass_the_competition_lets_pass(
     shape: list[Piece], turn: float, room_x: float, room_y: float
 ) -> None:

@@ -6,6 +6,7 @@ from collections import Counter
 import numpy as np
 import pytest
 
+from grids import diagonal
 from roadgpt import check
 from roadgpt.brief import read
 from roadgpt.brief.map_fit import longest_straight
@@ -61,8 +62,12 @@ def test_what_is_offered_holds(line: str, size: int, seed: int) -> None:
         assert drafted(line, World(site=Site(map_size=float(larger[1]))), seed)
 
 
-@pytest.mark.parametrize("size", [100, 200, 250, 1000, 10_000])
-@pytest.mark.parametrize("line", ["straight | turns=0 len={:.0f}", "straight | turns=0 len={:.0f}.."])
+@pytest.mark.parametrize(
+    ("size", "line"),
+    diagonal(
+        [100, 200, 250, 1000, 10_000], ["straight | turns=0 len={:.0f}", "straight | turns=0 len={:.0f}.."]
+    ),
+)
 def test_a_straight_road_goes_from_corner_to_corner(line: str, size: float) -> None:
     world = World(site=Site(map_size=size))
     longest = longest_straight(size)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import roadgpt
+from grids import diagonal, pairs
 from roadgpt.brief.land_words import land_in
 from roadgpt.brief.model import Brief
 from roadgpt.check import inspect
@@ -82,8 +83,7 @@ def grades(road: Road) -> np.ndarray:
     return np.diff(points[:, 2]) / np.hypot(*np.diff(points[:, :2], axis=0).T)
 
 
-@pytest.mark.parametrize("seed", [0, 1, 3])
-@pytest.mark.parametrize(("east", "north"), [(0.06, 0.0), (0.0, -0.06)])
+@pytest.mark.parametrize(("east", "north", "seed"), [(0.06, 0.0, 0), (0.0, -0.06, 1), (0.06, 0.0, 3)])
 def test_an_uphill_straight_on_a_plane_of_6_percent_has_the_grade_of_the_plane(
     east: float, north: float, seed: int
 ) -> None:
@@ -94,8 +94,7 @@ def test_an_uphill_straight_on_a_plane_of_6_percent_has_the_grade_of_the_plane(
     assert grades(road) == pytest.approx(0.06, abs=0.01)
 
 
-@pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize(("east", "north"), [(0.06, 0.0), (0.036, 0.048)])
+@pytest.mark.parametrize(("east", "north", "seed"), [(0.06, 0.0, 0), (0.036, 0.048, 1), (0.06, 0.0, 2)])
 def test_a_downhill_straight_falls_as_the_plane_falls_in_its_direction(
     east: float, north: float, seed: int
 ) -> None:
@@ -115,9 +114,9 @@ def test_a_level_straight_follows_the_contours() -> None:
     assert np.abs(grades(road)).max() < 0.01
 
 
-@pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize("words", ["hilly", "rolling land with a valley"])
-@pytest.mark.parametrize("plan", PLANS)
+@pytest.mark.parametrize(
+    ("plan", "words", "seed"), pairs(PLANS, ("hilly", "rolling land with a valley"), range(3))
+)
 def test_less_is_dug_than_in_the_middle_of_the_land(plan: str, words: str, seed: int) -> None:
     land = hills(words, seed)
     road = on(land, plan, seed)
@@ -129,8 +128,7 @@ def test_less_is_dug_than_in_the_middle_of_the_land(plan: str, words: str, seed:
     assert off(road, land).max() < 15.5  # beyond that it needs a bridge or a tunnel
 
 
-@pytest.mark.parametrize("land", [plane(0.04, 0.03), hills("hilly", 1)], ids=["plane", "hills"])
-@pytest.mark.parametrize("plan", PLANS)
+@pytest.mark.parametrize(("plan", "land"), diagonal(PLANS, [plane(0.04, 0.03), hills("hilly", 1)]))
 def test_turns_and_lengths_stay_as_they_are(plan: str, land: Relief) -> None:
     before, after = build(draft(plan)), on(land, plan)
     assert after.length == pytest.approx(before.length, abs=1e-6)

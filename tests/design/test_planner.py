@@ -89,7 +89,7 @@ def test_any_brief_gives_a_fine_road_or_one_sentence_of_advice(brief: Brief, wor
 @pytest.mark.parametrize("name", EVALUATION)
 def test_roads_of_one_prompt_are_fine_and_look_every_way(name: str) -> None:
     brief = EVALUATION[name]
-    designs = campaign(brief, 40)
+    designs = campaign(brief, 28)
     for design in designs:
         assert_fine(design, brief, WORLD)
     assert {int(design.theta // 45) for design in designs} == set(range(8))

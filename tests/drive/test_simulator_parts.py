@@ -173,7 +173,7 @@ def test_files_speak_of_the_car_that_drives() -> None:
     assert told.wheel == 2 * driven.unloaded_radius
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(st.floats(-0.3, 0.3), st.sampled_from([1, -1]))
 def test_a_wheel_at_the_rim_has_the_ground_that_is_under_its_tyre(beyond, side):
     """Counted over 1,001 strips of the tyre, on a road from 4 m left to 3 m right."""

@@ -90,8 +90,14 @@ def assert_obeys(
     assert apart[along > 70].min(initial=np.inf) > 2 * RIM
 
 
-@pytest.mark.parametrize(("east", "north"), [(0.0, 0.0), (0.04, 0.0), (-0.03, 0.04)])
-@pytest.mark.parametrize("ends", [((200.0, 200.0), (800.0, 500.0)), ((700.0, 150.0), (310.0, 420.0))])
+@pytest.mark.parametrize(
+    ("east", "north", "ends"),
+    [
+        (0.0, 0.0, ((700.0, 150.0), (310.0, 420.0))),
+        (0.04, 0.0, ((200.0, 200.0), (800.0, 500.0))),
+        (-0.03, 0.04, ((700.0, 150.0), (310.0, 420.0))),
+    ],
+)
 def test_on_a_plane_the_way_is_nearly_straight(east: float, north: float, ends: tuple[Place, Place]) -> None:
     land = plane(east, north)
     way = way_between(land, *ends, 0.08, 40.0)
@@ -114,9 +120,7 @@ def test_points_may_be_whole_numbers() -> None:
     assert repr(whole.plan) == repr(way_between(plane(0.02), *ends, 0.08, 40.0).plan)
 
 
-@pytest.mark.parametrize(
-    ("steepest", "radius", "is_up"), [(0.08, 40.0, True), (0.15, 15.0, True), (0.10, 25.0, False)]
-)
+@pytest.mark.parametrize(("steepest", "radius", "is_up"), [(0.15, 15.0, True), (0.10, 25.0, False)])
 def test_straight_up_a_slope_of_20_percent_it_winds(steepest: float, radius: float, is_up: bool) -> None:
     land, ends = plane(0.2), ((250.0, 500.0), (700.0, 480.0))
     ends = ends if is_up else ends[::-1]
@@ -170,7 +174,7 @@ def test_places_off_the_land_or_too_close_are_refused(start: Place, end: Place, 
 def test_in_real_mountains_most_ways_are_found_and_obey() -> None:
     land, found = jacksboro(200, 150), 0
     assert np.ptp(land.heights) > 500.0
-    for start, end in places(2):
+    for start, end in places(2, 6):
         try:
             way = way_between(land, start, end, 0.10, 30.0)
         except UsageError as error:
@@ -178,7 +182,7 @@ def test_in_real_mountains_most_ways_are_found_and_obey() -> None:
             continue
         found += 1
         assert_obeys(way, land, start, end, 0.10, 30.0)
-    assert found >= 7
+    assert found >= 4
 
 
 def test_the_same_call_gives_the_same_way_and_the_way_back_is_found_too() -> None:
@@ -192,16 +196,14 @@ def test_the_same_call_gives_the_same_way_and_the_way_back_is_found_too() -> Non
     assert back.plan.length == pytest.approx(one.plan.length, rel=0.5)
 
 
-@pytest.mark.parametrize(
-    "seed", [206, 268, 165, 362, 28, 534, 17, 436, 567, 600, 173, 227, 4, 330, 1128, 2243]
-)
+@pytest.mark.parametrize("seed", [206, 165, 28, 17, 567, 173, 4, 1128])
 def test_each_try_finds_ways_that_no_other_one_finds(seed: int) -> None:
-    """Two gardens for each of the tries, in their order: without it there is no way through them."""
+    """A garden for each of the tries, in their order: without it there is no way through them."""
     land, start, end = steep_garden(seed)
     assert_obeys(way_between(land, start, end, 0.10, 15.0), land, start, end, 0.10, 15.0)
 
 
-@pytest.mark.parametrize("seed", [29, 79, 120, 499, 509])
+@pytest.mark.parametrize("seed", [29, 120, 509])
 def test_the_last_arc_keeps_clear_of_the_way_before_it(seed: int) -> None:
     """In these gardens the nearest arc to the end crosses the way, or lies on it; another one does not."""
     land, start, end = steep_garden(seed)

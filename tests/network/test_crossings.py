@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import label
 
+from grids import diagonal, pairs
 from network.random_designs import random_design
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.geometry.curve import Array
@@ -135,9 +136,9 @@ def test_a_river_beside_a_road_comes_from_one_border_and_goes_to_another(name: s
     assert any((border[into] == part).sum() >= 2 for part in set(border[into]))
 
 
-@pytest.mark.parametrize("ground", ["", "flat", "mountain:3"])
-@pytest.mark.parametrize("scene", [*BRIDGES, *TUNNELS])
-@pytest.mark.parametrize("name", ROADS)
+@pytest.mark.parametrize(
+    ("scene", "ground", "name"), pairs((*BRIDGES, *TUNNELS), ("", "flat", "mountain:3"), [*ROADS])
+)
 def test_there_is_air_under_bridges_and_rock_over_tunnels(name: str, scene: str, ground: str) -> None:
     of, on = road(name), world(scene, ground)
     assert crossings(of, on)
@@ -251,8 +252,7 @@ def test_the_ceiling_of_a_tunnel_is_5_m_above_the_road_and_its_walls_at_the_rims
             assert wall[0] == pytest.approx(RIM, abs=0.1)
 
 
-@pytest.mark.parametrize("name", ROADS)
-@pytest.mark.parametrize("scene", TUNNELS)
+@pytest.mark.parametrize(("name", "scene"), diagonal([*ROADS], TUNNELS))
 def test_the_mesh_of_the_ground_leaves_the_mouths_of_tunnels_open(name: str, scene: str) -> None:
     of, on = road(name), world(scene, "hilly:2")
     mesh = mesh_of(ground_around(of, on), to_horizon=False)

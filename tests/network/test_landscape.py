@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from grids import diagonal, pairs
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.geometry.curve import Array
 from roadgpt.ground.ground import Ground
@@ -57,9 +58,14 @@ def seen_from_middle(of: Road, points: Array) -> Array:
     return np.stack([turned.real, turned.imag])
 
 
-@pytest.mark.parametrize("radius", [0.0, 250.0, -150.0])
-@pytest.mark.parametrize("grade", [0.0, 0.03, -0.03, 0.06, -0.06])
-@pytest.mark.parametrize("scene", ["river left", "river right", "valley along; river left"])
+@pytest.mark.parametrize(
+    ("grade", "scene", "radius"),
+    pairs(
+        (0.0, 0.03, -0.03, 0.06, -0.06),
+        ("river left", "river right", "valley along; river left"),
+        (0.0, 250.0, -150.0),
+    ),
+)
 def test_a_river_beside_a_road_lies_below_it_and_falls(scene: str, grade: float, radius: float) -> None:
     of = road(grade, radius)
     wet = points_of(ground_of(of, scene), is_wet=True)
@@ -73,9 +79,14 @@ def test_a_river_beside_a_road_lies_below_it_and_falls(scene: str, grade: float,
     assert (falling - np.minimum.accumulate(falling)).max() <= 0.05
 
 
-@pytest.mark.parametrize("radius", [0.0, -150.0])
-@pytest.mark.parametrize("kind", ["", "rolling:2", "hilly:3", "mountain:5", "mountain:6"])
-@pytest.mark.parametrize("scene", ["river across", "lake across", "coast across", "valley across; bridge"])
+@pytest.mark.parametrize(
+    ("scene", "kind", "radius"),
+    pairs(
+        ("river across", "lake across", "coast across", "valley across; bridge"),
+        ("", "rolling:2", "hilly:3", "mountain:5", "mountain:6"),
+        (0.0, -150.0),
+    ),
+)
 def test_no_earth_stands_on_a_bridge(scene: str, kind: str, radius: float) -> None:
     """Nor in its last metre, where the slope of the land below begins at the height of the road."""
     of = road(0.04, radius)
@@ -88,9 +99,9 @@ def test_no_earth_stands_on_a_bridge(scene: str, kind: str, radius: float) -> No
     assert np.min(np.asarray(apart)[:, 40:-40]) > 0.9  # m, of the deck
 
 
-@pytest.mark.parametrize(("side", "sign"), [("left", 1.0), ("right", -1.0)])
-@pytest.mark.parametrize(("kind", "told"), SHORES)
-def test_a_shore_is_as_far_away_as_told(kind: str, told: tuple[int, ...], side: str, sign: float) -> None:
+@pytest.mark.parametrize(("shore", "where"), diagonal(SHORES, [("left", 1.0), ("right", -1.0)]))
+def test_a_shore_is_as_far_away_as_told(shore: tuple[str, tuple[int, ...]], where: tuple[str, float]) -> None:
+    (kind, told), (side, sign) = shore, where
     of, found = road(), list[float]()
     for away in told:
         wet = points_of(ground_of(of, f"flat; {kind} {side} away={away}"), is_wet=True)

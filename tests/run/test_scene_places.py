@@ -43,12 +43,11 @@ SETUP = Setup(reader="plan", drives=False)
     ],
 )
 def test_a_road_has_what_its_scene_needs(plan: str) -> None:
-    for seed in (1, 2):
-        run = perform(read(plan, "plan", map_size=None), seed, World(), SETUP)
-        assert run.outcome != "INVALID"
-        assert run.road is not None
-        # where somebody has no place, it raises SceneError
-        assert begin(run.road, run.world, run.seed) is not None
+    run = perform(read(plan, "plan", map_size=None), 1, World(), SETUP)
+    assert run.outcome != "INVALID"
+    assert run.road is not None
+    # where somebody has no place, it raises SceneError
+    assert begin(run.road, run.world, run.seed) is not None
 
 
 @pytest.mark.parametrize(

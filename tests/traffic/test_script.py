@@ -10,6 +10,7 @@ import pytest
 from shapely import LineString, Point, Polygon
 
 from boxed import corners
+from grids import diagonal, pairs
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, Road, Segment, World, build
 from roadgpt.run import Setup, perform
@@ -108,20 +109,23 @@ def test_a_leader_keeps_its_headway_and_brakes_by_the_formula(road: Road) -> Non
     np.testing.assert_allclose(seen.left(0), 0.0, atol=0.02)
 
 
-@pytest.mark.parametrize("road", [STRAIGHT, CURVED])
 @pytest.mark.parametrize(
-    ("who", "kmh", "side", "impact"),
-    [
-        ("adult", 5, "right", 25),
-        ("adult", 8, "left", 50),
-        ("bicycle", 15, "right", 50),
-        ("child", 5, "left", 75),
-    ],
+    ("crossing", "ego", "road"),
+    pairs(
+        [
+            ("adult", 5, "right", 25),
+            ("adult", 8, "left", 50),
+            ("bicycle", 15, "right", 50),
+            ("child", 5, "left", 75),
+        ],
+        (20, 50, 80),
+        (STRAIGHT, CURVED),
+    ),
 )
-@pytest.mark.parametrize("ego", [20, 50, 80])
 def test_who_crosses_is_hit_where_the_scene_says(
-    road: Road, who: str, kmh: float, side: str, impact: float, ego: float
+    crossing: tuple[str, float, str, float], ego: float, road: Road
 ) -> None:
+    who, kmh, side, impact = crossing
     seen = show(f"ego v={ego}; {who} crossing {side} v={kmh} away=8 impact={impact}", road)
     for n in range(len(seen.car) - 1):
         for share in np.linspace(0.0, 1.0, 41)[:-1]:
@@ -208,8 +212,7 @@ SCENES = (
 )
 
 
-@pytest.mark.parametrize("scene", SCENES)
-@pytest.mark.parametrize("road", [STRAIGHT, CURVED])
+@pytest.mark.parametrize(("scene", "road"), diagonal(SCENES, (STRAIGHT, CURVED)))
 def test_motion_is_possible_and_headings_follow_it(scene: str, road: Road) -> None:
     seen = show(scene, road, 18.0, speed=lambda time: 15.0 - 3.0 * math.sin(time / 2))
     again = show(scene, road, 18.0, speed=lambda time: 15.0 - 3.0 * math.sin(time / 2))
@@ -471,22 +474,24 @@ LEVEL = 9.81 / np.hypot(1, 0.12)
 
 
 @pytest.mark.parametrize(
-    ("scene", "did", "asked"),
-    [
-        ("ego v=50; car ahead gap=40 v=50: brake 8 time=3", "car 1 brakes", "8.0"),
-        ("ego v=50; car ahead gap=60 v=50: stop 7 for=4 time=3", "car 1 stops", "7.0"),
-        ("ego v=50; car ahead gap=40 v=50: speed 90 accel=6 time=3", "car 1 changes its speed", "6.0"),
-        ("ego v=50; car lane left gap=30 v=50: cut_in 3 time=3", "car 1 cuts in", "5.1"),
-        ("ego v=50; car lane left gap=30 v=50: drift left 0.4 lat=1.4 time=3", "car 1 drifts", "9.8"),
-    ],
-)
-@pytest.mark.parametrize(
-    ("friction", "road"), [(0.1, STRAIGHT), (0.35, STRAIGHT), (0.4, DOWN), (0.35, CURVED)]
+    ("told", "place"),
+    diagonal(
+        [
+            ("ego v=50; car ahead gap=40 v=50: brake 8 time=3", "car 1 brakes", "8.0"),
+            ("ego v=50; car ahead gap=60 v=50: stop 7 for=4 time=3", "car 1 stops", "7.0"),
+            ("ego v=50; car ahead gap=40 v=50: speed 90 accel=6 time=3", "car 1 changes its speed", "6.0"),
+            ("ego v=50; car lane left gap=30 v=50: cut_in 3 time=3", "car 1 cuts in", "5.1"),
+            ("ego v=50; car lane left gap=30 v=50: drift left 0.4 lat=1.4 time=3", "car 1 drifts", "9.8"),
+        ],
+        [(0.1, STRAIGHT), (0.35, STRAIGHT), (0.4, DOWN), (0.35, CURVED)],
+        rows=11,
+    ),
 )
 def test_nobody_accelerates_more_than_friction_and_grade_allow_and_that_is_said(
-    scene: str, did: str, asked: str, friction: float, road: Road
+    told: tuple[str, str, str], place: tuple[float, Road]
 ) -> None:
     """Whatever a scene asks for; told with both numbers. At friction 1 it does what is asked for."""
+    (scene, did, asked), (friction, road) = told, place
     world = WORLD.changed(friction=friction)
     seen = show(scene, road, 9.0, world=world)
     speed, heading = seen.states[:, 0, 4], np.unwrap(seen.states[:, 0, 3])

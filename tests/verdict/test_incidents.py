@@ -13,6 +13,7 @@ from roadgpt.drive.lane_position import LanePolygon
 from roadgpt.network import Route, build_route
 from roadgpt.road import CrossSection, Limits, Road, World, read_design
 from roadgpt.verdict import Verdict, judge
+from staged import shares_outside
 
 WORLD = World(section=CrossSection(shoulder=2.0), limits=Limits(oob_tolerance=1.0))
 BOX = Box(4.7, 1.86, ahead=-0.1)  # its front is 2.25 m ahead
@@ -43,9 +44,8 @@ def driven(
     """A car at these places; stations and shares are computed from the route."""
     x = np.atleast_1d(np.asarray(x, float))
     y, heading, speed = (np.broadcast_to(np.asarray(each, float), x.shape) for each in (y, heading, speed))
-    lane, n = LanePolygon.along(route, WORLD), len(x)
-    columns = {name: np.zeros(n) for name in COLUMNS}
-    columns |= {"time": dt * np.arange(n), "x": x, "y": y, "heading": heading, "speed": speed}
+    columns = {name: np.zeros(len(x)) for name in COLUMNS}
+    columns |= {"time": dt * np.arange(len(x)), "x": x, "y": y, "heading": heading, "speed": speed}
     table = np.arange(0, route.length, 0.01)
     points, headings = route.plan.at(table), route.heading(table)
     _, nearest = cKDTree(points[:, :2]).query(np.column_stack([x, y]))
@@ -53,7 +53,7 @@ def driven(
     columns["s"] = table[nearest]
     columns["t"] = dy * np.cos(headings[nearest]) - dx * np.sin(headings[nearest])
     made = Drive("by hand", "paper", 0, Columns(columns), ended, BOX)  # type: ignore[arg-type]
-    columns["outside"] = np.array([lane.outside(made.corners(i), columns["s"][i]) for i in range(n)])
+    columns["outside"] = shares_outside(made, LanePolygon.along(route, WORLD), columns["s"])
     return Drive("by hand", "paper", 0, Columns(columns), ended, BOX)  # type: ignore[arg-type]
 
 

@@ -3,6 +3,7 @@ tested car and with kinds of contact. What is expected was written from the Vien
 (1968), whose article stands with each case, and not from the code."""
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -116,97 +117,101 @@ def walks(x: float, speed: float, at: float) -> Motion:
 EVEN = straight(10, LANE, 0, 15)  # its front is at x after (x - 12.35) / 15 s
 
 
-def cases() -> dict[str, Case]:
-    return {
-        "its red, article 23": junction("ego; ; red light; other", "lights", LEFT, GREEN),
-        "own red, 23": junction("other; red light; ; ego", "lights", LEFT, RED),
-        "both red, 23": junction("; red light; red light; both", "lights", LEFT, ALL_RED),
-        "its red, own speed, 23 and 13": junction(
-            "ego; speed; red light; both", "lights", LEFT, GREEN, v=7, limit=8
-        ),
-        "its sign, 10 and 18": junction("ego; ; priority; other", "priority", LEFT),
-        "its stop, 10": junction("ego; ; priority, stop; other", "priority", LEFT, cross="stop"),
-        "its stop, own speed": junction(
-            "ego; speed; priority, stop; both", "priority", LEFT, v=7, limit=8, cross="stop"
-        ),
-        "own stop, 10": junction("other; priority, stop; ; ego", "stop", LEFT),
-        "stood, and went too early, 10": junction("other; priority; ; ego", "stop", LEFT, stops=True),
-        "own sign, its speed, 18 and 13": junction(
-            "other; priority; speed; both", "yield", RIGHT, v=14, limit=12
-        ),
-        "from the right, 18": junction("other; priority; ; ego", "none", RIGHT),
-        "stood in the junction, from the right, 18": junction(
-            "other; priority; ; ego", "none", RIGHT, starts=True
-        ),
-        "stood in the junction, with a stop sign, 18": junction(
-            "ego; ; priority; other", "priority", LEFT, starts=True, cross="stop"
-        ),
-        "from the left, 18": junction("ego; ; priority; other", "none", LEFT),
-        "into a slow leader, 13": road("other; distance; ; ego", EVEN, "car", straight(60, LANE, 0, 5)),
-        "into who brakes, 13": road("other; distance; ; ego", straight(80, LANE, 0, 15), "car", brakes),
-        "hit from behind, 13": road(
-            "ego; ; distance; other", straight(50, LANE, 0, 5), "car", straight(30, LANE, 0, 15)
-        ),
-        "from behind, own speed": road(
-            "ego; speed; distance, speed; other",
-            straight(50, LANE, 0, 9),
-            "car",
-            straight(30, LANE, 0, 15),
-            7.5,
-        ),
-        "cut in short, 11 and 14": road("ego; ; lane; other", EVEN, "car", enters(30, 10, 1.0)),
-        "cut in short, own speed": road("ego; speed; lane; both", EVEN, "car", enters(30, 10, 1.0), 12),
-        "cut in far ahead, 13": road("other; distance; ; ego", EVEN, "car", enters(70, 6, 1.0)),
-        "own cut in short, 11 and 14": road(
-            "other; lane; ; ego", enters(30, 10, 1.0), "car", straight(10, LANE, 0, 15)
-        ),
-        "own change far ahead, 13": road(
-            "ego; ; distance; other", enters(70, 6, 1.0), "car", straight(10, LANE, 0, 15)
-        ),
-        "on a crosswalk, 21": crosswalk("other; priority; ; ego", "priority", is_far=False),
-        "on the crosswalk behind, 21": crosswalk("other; priority; ; ego", "priority", is_far=True),
-        "walks at red, 21": crosswalk("ego; ; priority; other", "lights", is_far=False, waits=GREEN),
-        "walks at red behind, 21": crosswalk("ego; ; priority; other", "lights", is_far=True, waits=GREEN),
-        "own red at a crosswalk, 23": crosswalk("other; red light; ; ego", "lights", is_far=False, waits=RED),
-        "own red, walks behind, 23": crosswalk("other; red light; ; ego", "lights", is_far=True, waits=RED),
-        "turns right over a bicycle, 16": turning("other; priority; ; ego", "right", -4.2),
-        "passed on the left while it turns left, 11": turning("ego; ; lane; other", "left", 0.2),
-        "it comes on the wrong side, 10": road(
-            "ego; ; wrong way; other", EVEN, "car", straight(150, LANE, np.pi, 10)
-        ),
-        "it drifts over, 10": road(
-            "ego; ; lane; other", straight(10, -1.5, 0, 15), "car", straight(150, 0.2, np.pi, 10)
-        ),
-        "own on the wrong side, 10": road(
-            "other; wrong way; ; ego", straight(10, 2, 0, 15), "car", straight(150, 2, np.pi, 10)
-        ),
-        "own drifts over, 10": road(
-            "other; lane; ; ego", straight(10, 0, 0, 15), "car", straight(150, 1.6, np.pi, 10)
-        ),
-        "both drive too fast, 10 and 13": road(
-            "ego; speed; speed, wrong way; both", EVEN, "car", straight(150, LANE, np.pi, 15), 10
-        ),
-        "steps onto the road, 20": road("ego; ; priority; other", EVEN, "adult", walks(55, 1.5, 2.84)),
-        "steps out, own speed": road("ego; speed; priority; both", EVEN, "child", walks(55, 1.5, 2.84), 10),
-        "walks ahead, 13": road("other; distance; ; ego", EVEN, "adult", straight(60, LANE, 0, 1.5)),
-        "rides out of a drive, 12": road("ego; ; priority; other", EVEN, "bicycle", walks(55, 4, 2.84)),
-        "a deer, which no law binds": road("ego; ; ; nobody", EVEN, "animal", walks(55, 4, 2.84)),
-        "lost load, 13": road("other; distance; ; ego", EVEN, "lost_load", straight(80, LANE, 0, 0)),
-        "backwards, 14": road(
-            "other; wrong way; ; ego", straight(60, LANE, np.pi, -9), "barrier", straight(90, LANE, 0, 0)
-        ),
-        "stands, and is hit, 13": road(
-            "ego; ; distance; other", straight(60, LANE, 0, 0), "car", straight(20, LANE, 0, 9)
-        ),
-    }
-
-
-CASES = cases()
+CASES: dict[str, Callable[[], Case]] = {
+    "its red, article 23": lambda: junction("ego; ; red light; other", "lights", LEFT, GREEN),
+    "own red, 23": lambda: junction("other; red light; ; ego", "lights", LEFT, RED),
+    "both red, 23": lambda: junction("; red light; red light; both", "lights", LEFT, ALL_RED),
+    "its red, own speed, 23 and 13": lambda: junction(
+        "ego; speed; red light; both", "lights", LEFT, GREEN, v=7, limit=8
+    ),
+    "its sign, 10 and 18": lambda: junction("ego; ; priority; other", "priority", LEFT),
+    "its stop, 10": lambda: junction("ego; ; priority, stop; other", "priority", LEFT, cross="stop"),
+    "its stop, own speed": lambda: junction(
+        "ego; speed; priority, stop; both", "priority", LEFT, v=7, limit=8, cross="stop"
+    ),
+    "own stop, 10": lambda: junction("other; priority, stop; ; ego", "stop", LEFT),
+    "stood, and went too early, 10": lambda: junction("other; priority; ; ego", "stop", LEFT, stops=True),
+    "own sign, its speed, 18 and 13": lambda: junction(
+        "other; priority; speed; both", "yield", RIGHT, v=14, limit=12
+    ),
+    "from the right, 18": lambda: junction("other; priority; ; ego", "none", RIGHT),
+    "stood in the junction, from the right, 18": lambda: junction(
+        "other; priority; ; ego", "none", RIGHT, starts=True
+    ),
+    "stood in the junction, with a stop sign, 18": lambda: junction(
+        "ego; ; priority; other", "priority", LEFT, starts=True, cross="stop"
+    ),
+    "from the left, 18": lambda: junction("ego; ; priority; other", "none", LEFT),
+    "into a slow leader, 13": lambda: road("other; distance; ; ego", EVEN, "car", straight(60, LANE, 0, 5)),
+    "into who brakes, 13": lambda: road("other; distance; ; ego", straight(80, LANE, 0, 15), "car", brakes),
+    "hit from behind, 13": lambda: road(
+        "ego; ; distance; other", straight(50, LANE, 0, 5), "car", straight(30, LANE, 0, 15)
+    ),
+    "from behind, own speed": lambda: road(
+        "ego; speed; distance, speed; other",
+        straight(50, LANE, 0, 9),
+        "car",
+        straight(30, LANE, 0, 15),
+        7.5,
+    ),
+    "cut in short, 11 and 14": lambda: road("ego; ; lane; other", EVEN, "car", enters(30, 10, 1.0)),
+    "cut in short, own speed": lambda: road("ego; speed; lane; both", EVEN, "car", enters(30, 10, 1.0), 12),
+    "cut in far ahead, 13": lambda: road("other; distance; ; ego", EVEN, "car", enters(70, 6, 1.0)),
+    "own cut in short, 11 and 14": lambda: road(
+        "other; lane; ; ego", enters(30, 10, 1.0), "car", straight(10, LANE, 0, 15)
+    ),
+    "own change far ahead, 13": lambda: road(
+        "ego; ; distance; other", enters(70, 6, 1.0), "car", straight(10, LANE, 0, 15)
+    ),
+    "on a crosswalk, 21": lambda: crosswalk("other; priority; ; ego", "priority", is_far=False),
+    "on the crosswalk behind, 21": lambda: crosswalk("other; priority; ; ego", "priority", is_far=True),
+    "walks at red, 21": lambda: crosswalk("ego; ; priority; other", "lights", is_far=False, waits=GREEN),
+    "walks at red behind, 21": lambda: crosswalk(
+        "ego; ; priority; other", "lights", is_far=True, waits=GREEN
+    ),
+    "own red at a crosswalk, 23": lambda: crosswalk(
+        "other; red light; ; ego", "lights", is_far=False, waits=RED
+    ),
+    "own red, walks behind, 23": lambda: crosswalk(
+        "other; red light; ; ego", "lights", is_far=True, waits=RED
+    ),
+    "turns right over a bicycle, 16": lambda: turning("other; priority; ; ego", "right", -4.2),
+    "passed on the left while it turns left, 11": lambda: turning("ego; ; lane; other", "left", 0.2),
+    "it comes on the wrong side, 10": lambda: road(
+        "ego; ; wrong way; other", EVEN, "car", straight(150, LANE, np.pi, 10)
+    ),
+    "it drifts over, 10": lambda: road(
+        "ego; ; lane; other", straight(10, -1.5, 0, 15), "car", straight(150, 0.2, np.pi, 10)
+    ),
+    "own on the wrong side, 10": lambda: road(
+        "other; wrong way; ; ego", straight(10, 2, 0, 15), "car", straight(150, 2, np.pi, 10)
+    ),
+    "own drifts over, 10": lambda: road(
+        "other; lane; ; ego", straight(10, 0, 0, 15), "car", straight(150, 1.6, np.pi, 10)
+    ),
+    "both drive too fast, 10 and 13": lambda: road(
+        "ego; speed; speed, wrong way; both", EVEN, "car", straight(150, LANE, np.pi, 15), 10
+    ),
+    "steps onto the road, 20": lambda: road("ego; ; priority; other", EVEN, "adult", walks(55, 1.5, 2.84)),
+    "steps out, own speed": lambda: road(
+        "ego; speed; priority; both", EVEN, "child", walks(55, 1.5, 2.84), 10
+    ),
+    "walks ahead, 13": lambda: road("other; distance; ; ego", EVEN, "adult", straight(60, LANE, 0, 1.5)),
+    "rides out of a drive, 12": lambda: road("ego; ; priority; other", EVEN, "bicycle", walks(55, 4, 2.84)),
+    "a deer, which no law binds": lambda: road("ego; ; ; nobody", EVEN, "animal", walks(55, 4, 2.84)),
+    "lost load, 13": lambda: road("other; distance; ; ego", EVEN, "lost_load", straight(80, LANE, 0, 0)),
+    "backwards, 14": lambda: road(
+        "other; wrong way; ; ego", straight(60, LANE, np.pi, -9), "barrier", straight(90, LANE, 0, 0)
+    ),
+    "stands, and is hit, 13": lambda: road(
+        "ego; ; distance; other", straight(60, LANE, 0, 0), "car", straight(20, LANE, 0, 9)
+    ),
+}
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_what_the_law_says(name: str) -> None:
-    drive, road, world, expected = CASES[name]
+    drive, road, world, expected = CASES[name]()
     found = incidents_of(Judged(road, drive, world))
     law = law_of(road, drive, world, found)
     contact = next(each.contact for each in found if each.contact is not None)
@@ -216,7 +221,7 @@ def test_what_the_law_says(name: str) -> None:
 
 
 def test_a_car_that_is_hit_by_one_that_runs_a_red_light_is_not_at_fault() -> None:
-    drive, road, world, _ = CASES["its red, article 23"]
+    drive, road, world, _ = CASES["its red, article 23"]()
     verdict = judge(road, drive, world)
     assert verdict.law is not None
     assert (verdict.law.way, verdict.law.other, verdict.at_fault) == ("ego", ("red light",), "other")
@@ -235,7 +240,7 @@ def test_who_brakes_for_nothing_is_at_fault_too() -> None:
 
 
 def test_records_of_before_are_read() -> None:
-    drive, road, world, _ = CASES["lost load, 13"]
+    drive, road, world, _ = CASES["lost load, 13"]()
     verdict = judge(road, drive, world)
     data = verdict.to_json()
     for each in data["incidents"]:

@@ -11,4 +11,4 @@ from roadgpt_training.pair import Pair
 @pytest.fixture(scope="session")
 def generated() -> tuple[Pair, ...]:
     """Generated pairs, as many as tell of every way in which pairs are made."""
-    return tuple(islice(pairs(11), 800))
+    return tuple(islice(pairs(11), 400))

@@ -22,4 +22,4 @@ def test_the_normal_form_stays(generated: tuple[Pair, ...]) -> None:
         if once != pair.plan:  # what is not changed has the same form
             changed += 1
             assert normal(read_plan(once)) == normal(read_plan(pair.plan))
-    assert changed > 5
+    assert changed > 2

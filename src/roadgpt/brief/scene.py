@@ -413,8 +413,8 @@ def usual_weather(kind: WeatherKind) -> Air:
 def _given(thing: Frozen, name: str) -> list[str]:
     """Returns the names of the numbers and conditions that a thing has; raises ValueError if a number is out
     of bounds, or two of them exclude each other."""
-    names = (*NUMBERS, "at")
-    given = {each: value for each in names if (value := getattr(thing, each, None)) is not None}
+    has = vars(thing)
+    given = {each: has[each] for each in (*NUMBERS, "at") if has.get(each) is not None}
     for field, amount in given.items():
         if isinstance(amount, Amount):
             number = NUMBERS[field]
