@@ -38,11 +38,17 @@ def page() -> str:
     groups = {len(ROAD_USERS): "all", len(PLACES["behind"].who): "who can move"}
     for where, place in PLACES.items():
         out.append(f"| `{where}` | {place.said} | {place.side} | {groups.get(len(place.who), 'vehicles')} |")
-    out += ["\n## Maneuvers\n", "| maneuver | in words | numbers | who begins with it |\n|---|---|---|---|"]
+    out += [
+        "\n## Maneuvers\n",
+        "The last column says what the script takes of the tested car, where that "
+        "[can be told to](../explanation/who-has-the-wheel.md) do it.\n",
+        "| maneuver | in words | numbers | who begins with it | tested car |\n|---|---|---|---|---|",
+    ]
     for what, maneuver in MANEUVERS.items():
         numbers = ", ".join(f"`{NUMBERS[name].key}`" for name in maneuver.numbers)
         starts = "everybody" if len(maneuver.starts) == len(PLACES) else ", ".join(maneuver.starts)
-        out.append(f"| `{what}` | {maneuver.said} | {numbers} | {starts} |")
+        starts = starts if maneuver.who else "the tested car alone"
+        out.append(f"| `{what}` | {maneuver.said} | {numbers} | {starts} | {maneuver.hands} |")
     out += ["\n## Weather\n", "| weather | from | to | alone | friction | words |\n|---|---|---|---|---|---|"]
     for air, weather in WEATHER.items():
         unit = "mm/h" if weather.falls else "m of visual range"

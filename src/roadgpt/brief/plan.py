@@ -471,8 +471,8 @@ def _made(model: type[Model], fields: dict[str, object], text: str) -> Model:
 
 def scene_plan(scene: Scene) -> str:
     """Returns a scene as it stands in a plan, such as "truck ahead gap=30: brake; medium"; "" for none."""
-    itself = written(scene, ITSELF)
-    line = [" ".join([TESTED_CAR, *itself])] if itself else []
+    itself, own = written(scene, ITSELF), ", ".join(map(action_plan, scene.actions))
+    line = [" ".join([TESTED_CAR, *itself]) + f": {own}" * bool(own)] if itself or own else []
     for role in scene.actors:
         actor = _marked(role.kind, role, AN_ACTOR)
         actions = ", ".join(map(action_plan, role.actions))
@@ -504,7 +504,9 @@ def read_scene(text: str) -> Scene:
 def scene_fields(text: str) -> dict[str, object]:
     """Returns the fields of the scene that stands in a plan, which are not yet checked against each other."""
     fields: dict[str, object] = {}
-    several: dict[str, list[Any]] = {name: [] for name in ("actors", "slippery", "landscape", "parked")}
+    several: dict[str, list[Any]] = {
+        name: [] for name in ("actors", "actions", "slippery", "landscape", "parked")
+    }
     airs = dict[str, Air]()
     for part in filter(None, map(str.strip, text.split(";"))):
         first, *words = part.replace(":", " : ").split()
@@ -520,7 +522,9 @@ def scene_fields(text: str) -> dict[str, object]:
         elif first in (*ROAD_USERS, *PLACES):
             several["actors"].append(_read_role(part))
         elif first == TESTED_CAR:
-            _read_words(fields, words, ITSELF)
+            head, _, rest = part.partition(":")
+            _read_words(fields, head.split()[1:], ITSELF)
+            several["actions"] += [read_action(each) for each in rest.split(",") if each.strip()]
         elif first == SLIPPERY:
             several["slippery"].append(_made(SlipperyPlace, _read_words({}, words, A_PATCH), part))
         elif first in LANDFORMS:

@@ -19,6 +19,7 @@ from roadgpt.language.table import (
     MANEUVERS,
     MOVING,
     NUMBERS,
+    OF_ITSELF,
     PLACES,
     SCENES,
     SURFACES,
@@ -100,6 +101,11 @@ class Action(Frozen):
             raise ValueError(f"'{self.what}' has no side; leave '{self.side}' out")
         return self
 
+    @property
+    def marks(self) -> tuple[Mark, ...]:
+        """The part of the route, or what somebody else does, that says when it begins, if one does."""
+        return (self.at,) if self.at else ()
+
     def __str__(self) -> str:
         side = [f"to the {self.side}"] if self.side else []
         return " ".join([MANEUVERS[self.what].said, *side, *_said(self)])
@@ -168,7 +174,8 @@ class Role(Frozen):
     @property
     def marks(self) -> tuple[Mark, ...]:
         """The parts of the route, and what others do, that say where it is and when it acts."""
-        return tuple(filter(None, (self.at, *(each.at for each in self.actions))))
+        own = (self.at,) if self.at else ()
+        return (*own, *(mark for each in self.actions for mark in each.marks))
 
     @property
     def goes(self) -> What:
@@ -278,6 +285,9 @@ class Scene(Frozen):
     """The way that the tested car takes at the first junction; None: that of the route."""
     person: Person | None = None
     """Who is at the wheel where a driver hands over, as in the catalogue; None: whom the driver chooses."""
+    actions: tuple[Action, ...] = ()
+    """What the tested car is made to do (``roadgpt.drive.script_hand``). Its gaps are those to who is
+    ahead in its lane."""
     actors: tuple[Role, ...] = ()
     flow: Flow | None = None
     """How many vehicles drive in the lanes of the map: 5, 12 or 25 for each km and lane; None: nobody."""
@@ -317,12 +327,27 @@ class Scene(Frozen):
                 f"lanes count from 1 to {MOST_LANES} from the kerb, or from -1 from the innermost one, and"
                 f" there is no lane {self.lane}; write for example lane=1"
             )
-        for role in self.actors:
-            for event in (action.at for action in role.actions if action.at and action.at.what):
+        for action in self.actions:
+            if action.what not in OF_ITSELF:
+                can = ", ".join(OF_ITSELF)
+                raise ValueError(f"the tested car cannot be told to '{action.what}'; it can {can}")
+            follows = self.actions[self.actions.index(action) + 1 :][:1]
+            is_open = not follows or not {*CUES} & follows[0].model_fields_set
+            if action.what == "wait" and action.duration is None and is_open:
+                raise ValueError(
+                    "the tested car waits without end; write wait 5, or when what comes next begins"
+                )
+        for who, actions in ((None, self.actions), *((role, role.actions) for role in self.actors)):
+            for event in (action.at for action in actions if action.at and action.at.what):
                 same = [each for each in self.actors if each.kind == event.of][event.number - 1 :][:1]
-                if not same or same[0] is role or event.what not in [each.what for each in same[0].actions]:
+                if not same or same[0] is who or event.what not in [each.what for each in same[0].actions]:
                     raise ValueError(f"'{event}' needs another {event.of} that does '{event.what}'; name one")
         return self
+
+    @property
+    def marks(self) -> tuple[Mark, ...]:
+        """The parts of the route, and what others do, that say where somebody is and when one acts."""
+        return tuple(mark for each in (*self.actions, *self.actors) for mark in each.marks)
 
     @property
     def hills(self) -> LandKind:
@@ -477,6 +502,8 @@ def parts_said(scene: Scene) -> Iterator[str]:
         starts.append(f"in {f'lane {scene.lane} from the kerb' if scene.lane > 0 else inner}")
     if starts:
         yield f"the tested car starts {' '.join(starts)}"
+    if scene.actions:
+        yield f"the tested car {', then '.join(map(str, scene.actions))}"
     phrases = {str(name): said for name, said in LIGHTS.items()}
     phrases |= {name: row.said for name, row in SURFACES.items()}
     for name, said in SCENES["said"].items():

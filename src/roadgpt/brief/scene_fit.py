@@ -5,6 +5,7 @@ what a slippery surface gives, if there is room. Until that happens, it needs no
 Where the words leave the bends open and there is room, they are those of a road that is designed for the
 greatest speed of the scene, so that nobody slows down for them."""
 
+from collections.abc import Sequence
 from math import ceil, inf, pi
 
 from roadgpt.brief.amount import Amount, at_least
@@ -33,6 +34,7 @@ SHORT, LONG = 7.0, 14.0  # m of a row for each who stands in it
 UNCOVERED = 70.0  # m, to who is uncovered behind somebody that leaves the lane
 VERGE = 8.0  # m, from the lanes to who comes from beside them; with a median, and what starting costs
 LANES_OF_MOTORWAY = 2
+STANDS = ("wait", "stop", "creep")  # what takes the tested car hardly any road after it has come to that
 WIDEST = 250.0  # m, the radius of bends that are asked for, at most, so that everybody calls them bends
 KMH = 3.6
 
@@ -44,7 +46,9 @@ def fitted(brief: Brief, scene: Scene, limit: float, map_size: float | None = No
     and no bend: the car then begins as fast as it can."""
     brief = with_places(brief, scene)
     check_scene(scene, brief)
-    needs = (scene.actors, scene.has_flow, scene.speed, scene.lane, scene.slippery, scene.turn)
+    needs = (
+        scene.actors, scene.actions, scene.has_flow, scene.speed, scene.lane, scene.slippery, scene.turn
+    )  # fmt: skip
     if brief.map is not None or not any(needs):
         return brief
     speed = _most(scene.speed) / KMH if scene.speed else limit
@@ -76,7 +80,8 @@ def fitted(brief: Brief, scene: Scene, limit: float, map_size: float | None = No
             if not (is_straight or place.kind in LANE_KINDS):
                 break
             before -= min(_length(road).hi + JUNCTION, before)
-    late = [each for role in scene.actors for each in role.actions if each.time or each.distance]
+    acts = [*scene.actions, *(each for role in scene.actors for each in role.actions)]
+    late = [each for each in acts if each.time or each.distance]
     if late or any(role.where in ("crossing", "beside") for role in scene.actors):
         others[0] = _as_long(others[0], min(behind, _length(others[0]).hi))
     stretches = (_suited(first, scene, lanes, speed, until, before), *others)
@@ -91,7 +96,10 @@ def _until_stop(scene: Scene, speed: float, brief: Brief) -> float:
     near, far = (LANE * (each - 0.5) + VERGE for each in (along, along + against))
     kerbs, roles = (None, "left" if brief.left_hand else "right"), scene.actors
     seconds = [ROLLS, *(_lasts(role, speed, near if role.side in kerbs else far) for role in roles)]
+    moves = [each for each in scene.actions if each.what not in STANDS]
+    seconds.append(_ends(moves, speed))
     named = [role.station for role in roles] + [each.station for role in roles for each in role.actions]
+    named += [each.station or each.distance for each in scene.actions]
     named += [each.station for each in scene.slippery]
     named += [role.gap for role in roles if role.where == "oncoming"]
     longest = max(_length(road).hi for road in brief.stretches or (brief,))
@@ -140,11 +148,16 @@ def _lasts(role: Role, speed: float, across: float) -> float:
         walks = (_most(role.away) or across) / own + sum(own / 2 / rate for rate in rates if rate)
         walks = _most(role.actions[0].ttc) or walks if role.actions else walks
         meets = max(ROLLS + 2.0, walks + 1.0)  # they are never there sooner
-    lasts, now = max((_most(each.time) for each in role.actions), default=0.0) or ROLLS, own
-    for action in role.actions:
-        seconds, now = _takes(action, now)
+    return max(meets, _ends(role.actions, own))
+
+
+def _ends(actions: Sequence[Action], speed: float) -> float:
+    """Returns after how many seconds somebody of a speed has done one thing after another."""
+    lasts = max((_most(each.time) for each in actions), default=0.0) or ROLLS
+    for action in actions:
+        seconds, speed = _takes(action, speed)
         lasts += seconds
-    return max(meets, lasts)
+    return lasts
 
 
 def _takes(action: Action, speed: float) -> tuple[float, float]:

@@ -181,8 +181,7 @@ def _lacking(brief: Brief, scene: Scene) -> Iterator[JunctionClause]:
 
 def _most(scene: Scene, of: str) -> int:
     """Returns how many turns or junctions a scene names."""
-    marks = [mark for role in scene.actors for mark in role.marks]
-    return max((abs(mark.number) for mark in marks if mark.of == of), default=0)
+    return max((abs(mark.number) for mark in scene.marks if mark.of == of), default=0)
 
 
 def _with_lanes(brief: Brief, scene: Scene) -> Brief:
@@ -255,9 +254,10 @@ def _faults(scene: Scene, brief: Brief) -> Iterator[str]:
         leaves = role.where in ("ahead", "behind") and any(each.what in LEAVES for each in role.actions)
         if leaves and along < 2:
             yield f"'{role}' needs {lacks['lane']}"
-        for mark in role.marks:
+    for who in (*scene.actors, *scene.actions):
+        for mark in who.marks:
             if mark.number > (count := counts.get(mark.of, inf)):
-                yield f"'{role}' needs {mark.of} {mark.number}, and there are {count:g}; change one of them"
+                yield f"'{who}' needs {mark.of} {mark.number}, and there are {count:g}; change one of them"
     if scene.lane and abs(scene.lane) > along:
         yield f"the tested car's lane={scene.lane} needs more lanes; write lanes={abs(scene.lane)}"
     inner, outer = scene.lanes_in_and_out(brief.left_hand)

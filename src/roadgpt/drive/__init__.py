@@ -77,7 +77,8 @@ class Simulator(Protocol):
     A simulator that cannot apply some field of the World, such as "friction", lists the field's name in an
     attribute ``ignores``. If a user sets one of these fields, an error is raised. A simulator that cannot
     drive routes through junctions has an attribute ``single_roads_only`` that is True. A simulator that moves
-    others on the road has an attribute ``moves_others`` that is True; only then it gets ``traffic``."""
+    others on the road has an attribute ``moves_others`` that is True; only then it gets ``traffic``. One that
+    does what a scene tells the tested car has an attribute ``heeds_scripts`` that is True."""
 
     def simulate(
         self,
@@ -162,7 +163,8 @@ def simulate(
     check_motion(drive)
     if traffic is None:
         return drive
-    return replace(drive, missed=traffic.missed, limited=(*traffic.limited,), stopped=traffic.stopped)
+    missed, limited = (*drive.missed, *traffic.missed), (*drive.limited, *traffic.limited)
+    return replace(drive, missed=missed, limited=limited, stopped=traffic.stopped)
 
 
 def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None, replays: bool = False) -> None:
@@ -171,6 +173,11 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None, r
     or are replayed. ``road`` is None if it is not known yet."""
     from roadgpt.road import World
 
+    if world.scene.actions and not getattr(simulator, "heeds_scripts", False):
+        raise UsageError(
+            f"this simulator cannot make the tested car do what its scene tells ({world.scene.actions[0]}); "
+            "drive in the simulator mujoco"
+        )
     asked = world.scene.on_the_road
     if (replays or asked != Scene()) and not getattr(simulator, "moves_others", False):
         lacks = "move others on the road yet; leave scene and tracks out"

@@ -4,7 +4,8 @@ import io
 import json
 import zipfile
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
 
@@ -49,6 +50,7 @@ COLUMNS = {
 """Names of the columns in their order, each with its unit and meaning."""
 TOLD = ("missed", "limited", "stopped")  # of others: tuples of texts
 RARE = ("handovers", "lights", *TOLD)  # of a header, only where they are not empty
+UNHEEDED = "unheeded"
 OTHERS = "others"
 """Array of the states of others: whole numbers (samples, actors, 5); NaN, once GONE, of who is away."""
 PER_UNIT = np.array([1e3, 1e3, 1e3, 1e4, 1e3])  # of these numbers in a m, m, m, rad, m/s
@@ -62,6 +64,11 @@ FASTEST = 200.0  # m/s; the fastest production cars reach 135, a car that falls 
 STANDING = 20.0  # m; if the speeds amount to a longer distance than this ...
 SHARE = 1 / 3  # ... the car must have moved at least this share of that distance
 FAILED = ", so the simulation failed, which says nothing about the driver; drive the road again"
+
+
+SCRIPT, PEDALS = "the script", "the script's pedals"
+"""Who drives instead of the driver where a scene has the wheel, or the pedals alone."""
+RETURNS = 2.0  # s from when the script lets the wheel go, after which the lane counts again
 
 
 class Box(NamedTuple):
@@ -150,6 +157,9 @@ class Drive:
     """What others did with less than their actions ask for, because the road gives no more, in sentences."""
     stopped: tuple[str, ...] = ()
     """Names of the others whom a contact with the tested car made brake."""
+    unheeded: FloatArray | None = None
+    """What the driver commanded while the script had the wheel or the pedals: steer, throttle and brake,
+    shape (n - 1, 3), NaN elsewhere; None if the script had neither."""
 
     def __repr__(self) -> str:
         way = f"{self['s'][-1]:.1f} m in {self.duration:.2f} s, {len(self)} steps"
@@ -174,10 +184,20 @@ class Drive:
         competition checks for the goal first, then for motion, then for the lane."""
         return max(len(self) - 1, 1) if self.ended in ("goal", "stuck") else len(self)
 
+    @cached_property
+    def counts(self) -> NDArray[np.bool_]:
+        """At which steps the verdict checks whether the car is in its lane, shape (n,): those of
+        ``lane_steps`` but for those at which the script steers, or did RETURNS seconds before."""
+        time, found = self["time"], np.arange(len(self)) < self.lane_steps
+        for each in self.handovers:
+            if each.by == SCRIPT:
+                found &= ~((time > each.start) & (time <= each.end + RETURNS))
+        return found
+
     @property
     def max_outside(self) -> float:
-        """Largest share of the car's box outside its lane, 0..1, over the steps of ``lane_steps``."""
-        return float(self.columns["outside"][: self.lane_steps].max())
+        """Largest share of the car's box outside its lane, 0..1, over the steps at which that counts."""
+        return float(self.columns["outside"][self.counts].max(initial=0.0))
 
     def handed_to(self, step: int) -> str | None:
         """Returns the name of whoever drove up to this step in the driver's place; None for the driver."""
@@ -228,6 +248,8 @@ class Drive:
                 add_array(archive, name, column)
             if states is not None:
                 add_array(archive, OTHERS, states)
+            if self.unheeded is not None:
+                add_array(archive, UNHEEDED, self.unheeded)
         return buffer.getvalue()
 
     @classmethod
@@ -254,13 +276,17 @@ def _checked(header: Any, arrays: Mapping[str, NDArray[Any]]) -> Drive:
         raise ValueError(f"its format is {header['format']}, not {FORMAT}")
     arrays = dict(arrays)
     states = arrays.pop(OTHERS) if OTHERS in header else None
+    unheeded = arrays.pop(UNHEEDED, None)
     if set(arrays) != set(COLUMNS):
         raise ValueError(f"columns missing or unknown: {', '.join(sorted(set(arrays) ^ set(COLUMNS)))}")
     if any(array.ndim != 1 for array in arrays.values()):
         raise ValueError("a column is a list of numbers")
     if len({len(array) for array in arrays.values()}) != 1 or not len(arrays["time"]):
         raise ValueError("columns are of one length, and not empty")
-    return unpacked(header, Columns({name: arrays[name] for name in COLUMNS}), states)
+    if unheeded is not None and unheeded.shape != (len(arrays["time"]) - 1, 3):
+        raise ValueError("what the driver commanded has three numbers for each step")
+    drive = unpacked(header, Columns({name: arrays[name] for name in COLUMNS}), states)
+    return replace(drive, unheeded=unheeded)
 
 
 def packed(drive: Drive) -> tuple[dict[str, Any], NDArray[np.float64] | None]:

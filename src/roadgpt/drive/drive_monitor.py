@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roadgpt.drive.drive import COLUMNS, Box, Ended, FloatArray, Mishap
+from roadgpt.drive.drive import COLUMNS, PEDALS, RETURNS, SCRIPT, Box, Ended, FloatArray, Mishap
 from roadgpt.drive.lane_position import POSE, MarkingMonitor
 from roadgpt.errors import SimulationError
 from roadgpt.road.road import GOAL, START
@@ -53,7 +53,7 @@ class DriveMonitor:
         profile = world.profile_of(road)
         left, right = profile.lane(road.length)
         self._end = np.asarray(road.at(road.length, right if profile.left_hand else left)).tolist()
-        self._since, self._from = 0.0, (math.nan, math.nan)
+        self._since, self._from, self._free_until = 0.0, (math.nan, math.nan), -math.inf
 
     def ended(self, row: FloatArray, time: float, mishap: Mishap | None) -> Ended | None:
         """Returns how the drive ended at this step, or None if the drive continues.
@@ -74,11 +74,20 @@ class DriveMonitor:
             return "goal"
         if self.is_stuck(x, y, time):
             return "stuck"
-        if self.is_out(outside, None if self._tyres is None else row[_POSE]):
+        is_free = time <= self._free_until + ROUNDING
+        if not is_free and self.is_out(outside, None if self._tyres is None else row[_POSE]):
             return "out_of_lane"
         if mishap:
             return mishap
         return "timeout" if time >= self.limit - ROUNDING else None
+
+    def heed(self, by: str | None, time: float, dt: float) -> None:
+        """Heeds whether the script has the wheel or the pedals, in the step that begins: then the car may
+        be outside its lane, and stand as long as the script wants."""
+        if by == SCRIPT:
+            self._free_until = time + dt + RETURNS
+        if by in (SCRIPT, PEDALS):
+            self._since, self.limit = time + dt, self.limit + dt
 
     def touch(self, time: float) -> None:
         """Records that the car touches somebody; only the first time counts."""

@@ -10,13 +10,17 @@ import time
 import traceback
 from typing import TYPE_CHECKING, Any
 
-from roadgpt.drive.drive import Handover
+import numpy as np
+
+from roadgpt.drive.drive import FloatArray, Handover
 from roadgpt.drive.view import View
 from roadgpt.errors import DriverError
 
 if TYPE_CHECKING:
+    from roadgpt.drive.script_hand import ScriptHand
     from roadgpt.road import Road, World
 
+NOTHING = (math.nan, math.nan, math.nan)
 ONE_ANSWER = 2.0  # s of wall time for one `steer`
 BEFORE_START = 30.0  # s for `start`: a driver may plan, or load a network
 WHOLE_DRIVE = 600.0  # s for all answers of a drive together
@@ -29,9 +33,11 @@ class RemoteDriverError(DriverError):
 class DriverGuard:
     """Calls one driver during one drive."""
 
-    def __init__(self, driver: Any, whole_drive: float = WHOLE_DRIVE) -> None:
-        """Wraps a driver, whose answers may take ``whole_drive`` seconds of wall time together; raises
-        DriverError if it has no method ``steer``."""
+    def __init__(
+        self, driver: Any, whole_drive: float = WHOLE_DRIVE, script: "ScriptHand | None" = None
+    ) -> None:
+        """Wraps a driver, whose answers may take ``whole_drive`` seconds of wall time together, and who
+        shares wheel and pedals with a ``script``; raises DriverError if it has no method ``steer``."""
         self.name = str(getattr(driver, "name", type(driver).__name__))
         self._driver = driver
         self._steer = getattr(driver, "steer", None)
@@ -44,6 +50,7 @@ class DriverGuard:
         self._used = 0.0
         self.handed_to: str | None = None
         self.handovers: list[Handover] = []
+        self.script, self._unheeded = script, list[tuple[float, float, float]]()
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
         """Calls the driver's ``start``, if it has one."""
@@ -62,11 +69,22 @@ class DriverGuard:
                 f"driver '{self.name}' took more than {self._whole_drive:g} s for one drive: "
                 "make steer() faster"
             )
+        command, hands = self._checked(answer, view.time), None
+        if self.script is not None:
+            own, (command, hands) = command, self.script.shared(view, command)
+            self._unheeded.append(own if hands else NOTHING)
+            by = hands or by
         before, self.handed_to = self.handed_to, by
         if by:
             start = self.handovers.pop().start if before == by else view.time
             self.handovers.append(Handover(start, view.time + view.dt, by))
-        return self._checked(answer, view.time)
+        return command
+
+    @property
+    def unheeded(self) -> FloatArray | None:
+        """What the driver commanded while the script had a hand, as the Drive has it."""
+        said = np.array(self._unheeded).reshape(-1, 3)
+        return None if np.isnan(said).all() else said
 
     def _answer(self, view: View) -> tuple[Any, str | None]:
         answer = self._steer(view)  # type: ignore[misc]

@@ -115,6 +115,8 @@ class ManeuverRow:
     who: tuple[ActorKind, ...] = ()
     usual: float | None = None
     """Its first number, where a plan gives none."""
+    hands: Literal["", "pedals", "wheel", "both"] = ""
+    """What the script takes of the tested car that does it; empty if that cannot be told to."""
 
 
 class Falling(NamedTuple):
@@ -215,7 +217,9 @@ WITH_TOKENS: tuple[ActorKind, ...] = tuple(name for name, row in ROAD_USERS.item
 """Those that the trained networks write."""
 SIZES: Mapping[ActorKind, Size] = {name: row.size for name, row in ROAD_USERS.items()}
 USUAL_SPEEDS: Mapping[ActorKind, float] = {name: row.speed for name, row in ROAD_USERS.items() if row.speed}
-_WHO: Mapping[str, tuple[ActorKind, ...]] = {"all": tuple(ROAD_USERS), "moving": MOVING, "vehicles": VEHICLES}
+_WHO: Mapping[str, tuple[ActorKind, ...]] = {
+    "all": tuple(ROAD_USERS), "moving": MOVING, "vehicles": VEHICLES, "nobody": (),
+}  # fmt: skip
 SCENES = _table("scenes.toml")
 ROADS = _table("roads.toml")
 """What words for roads require: features, sharpness, sizes, slopes, junctions, signs."""
@@ -267,6 +271,10 @@ MANEUVERS: Mapping[What, ManeuverRow] = {
     )
     for name, row in SCENES["actions"].items()
 }
+OF_OTHERS: tuple[What, ...] = tuple(name for name, row in MANEUVERS.items() if row.who)
+"""What somebody besides the tested car can do."""
+OF_ITSELF: tuple[What, ...] = tuple(name for name, row in MANEUVERS.items() if row.hands)
+"""What the tested car can be told to do."""
 CUES: tuple[str, ...] = tuple(SCENES["cues"]["rows"])
 FLOWS: Mapping[Flow, int] = {name: row["per_km"] for name, row in SCENES["flows"].items()}
 """How many vehicles drive on each km of a lane."""

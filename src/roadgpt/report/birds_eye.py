@@ -286,7 +286,7 @@ def severities(drive: Drive | None, every: int = 1) -> list[Severity]:
     checks."""
     if drive is None or not drive.lane_steps:
         return []
-    shares = drive["outside"][: drive.lane_steps]
+    shares = np.where(drive.counts, drive["outside"], 0.0)[: drive.lane_steps]
     return [severity(share) for share in np.maximum.reduceat(shares, np.arange(0, len(shares), every))]
 
 
@@ -385,11 +385,11 @@ def _named(group: Sequence[Incident]) -> str:
 
 
 def _farthest(run: Run, drive: Drive, verdict: Verdict) -> MarkedPlace:
-    step = int(drive["outside"][: drive.lane_steps].argmax())
+    step = int(np.where(drive.counts, drive["outside"], 0.0).argmax())
     said = f"{percent(verdict.max_oob)} of the car outside,\n{far_beyond(verdict.beyond)}"
     if run.world.limits.lane_departure:  # which is judged by the front tyres
         assert run.road is not None
-        margin = margins(run.road, drive, run.world)[: drive.lane_steps]
+        margin = np.where(drive.counts, margins(run.road, drive, run.world), np.inf)
         step, said = int(margin.argmin()), f"{margin.min():.2f} m sideways\nfrom failing"
     x, y, s = (float(drive[name][step]) for name in ("x", "y", "s"))
     return MarkedPlace(x, y, s, said, step, SEVERE[verdict.severity])

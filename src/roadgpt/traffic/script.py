@@ -48,7 +48,9 @@ class Script:
 
     def _placed(self, met: Met) -> list[Performer]:
         """Returns everybody where they are at first, as seen from the tested car."""
-        found, events, kinds = list[Performer](), dict[tuple[str, ...], float](), Counter[str]()
+        found, kinds = list[Performer](), Counter[str]()
+        self.events: dict[tuple[str, ...], float] = {}
+        """When what the actors do has begun and ended, as ``Maneuver.event`` names it."""
         for number, role in enumerate(self._stage.world.scene.actors):
             kinds[role.kind] += 1
             name, alike = (role.kind, str(kinds[role.kind])), list[Placing]()
@@ -56,7 +58,7 @@ class Script:
             high = int(role.count.hi or low + MOST_MORE)
             for copy in range(np.random.default_rng([self._stage.seed, number]).integers(low, high + 1)):
                 rng = np.random.default_rng([self._stage.seed, number, copy])
-                alike.append(Placing(self._stage, self._way, role, met, rng, alike, events))
+                alike.append(Placing(self._stage, self._way, role, met, rng, alike, self.events))
             found += [Performer(each, None if each.copy else name) for each in alike]
         self._order([each.placed for each in found])
         return found

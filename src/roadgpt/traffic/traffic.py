@@ -119,6 +119,13 @@ class Traffic:
         return np.asarray((1 - share) * now + share * after) if share else now
 
     @property
+    def events(self) -> dict[tuple[str, ...], float]:
+        """When what the actors of a scene do has begun and ended, in seconds, by ``Maneuver.event``."""
+        return {
+            event: time for mover, _ in self._movers for event, time in getattr(mover, "events", {}).items()
+        }
+
+    @property
     def happened(self) -> dict[str, float]:
         """What of the scene has begun, in words, and the station in metres along its road where the tested
         car was then."""

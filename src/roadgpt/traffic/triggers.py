@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 
+from roadgpt.language.table import MANEUVERS
 from roadgpt.traffic.actor import STILL
 from roadgpt.traffic.course import Course, Met
 from roadgpt.traffic.following import JAM, time_over
@@ -145,6 +146,13 @@ class Triggers:
                 if accel is None and lasts:
                     pull, lasts = max(abs(goal - v) / lasts, 1e-6), None
                 return [Phase(goal, pull, lasts=lasts, until="speed")]
+            case "wait":
+                return [
+                    Phase(0.0, STOP, until="speed"), Phase(lasts=math.inf if lasts is None else lasts)
+                ]  # fmt: skip
+            case "creep":
+                goal = (MANEUVERS["creep"].usual or 0.0) / 3.6 if to is None else to
+                return [Phase(goal, CHANGE, until="speed"), *([Phase(lasts=lasts)] if lasts else [])]
             case "follow":
                 headway = max(course.gap(v, self.met)[0] - JAM, 0.0) / max(v, 1.0)
                 return [Phase(lasts=math.inf if lasts is None else lasts, follows=headway)]

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from roadgpt.drive.drive import PEDALS, RETURNS, SCRIPT
 from roadgpt.errors import UsageError
 from roadgpt.geometry import wrap_angle
 from roadgpt.geometry.curve import Array
@@ -209,6 +210,9 @@ class Criterion(NamedTuple):
     """Whether it counts only on a route, or among others."""
 
 
+STEERED: Set[str] = {"out of lane", "wrong turn", "wrong way", "off road"}
+MEETING: Set[str] = {"collision", "near miss"}
+"""What the wheel decides, and what is judged whoever had the wheel: the driver can brake at any time."""
 ROUTE, OTHERS = frozenset({"route"}), frozenset({"others"})
 CRITERIA = (
     Criterion(
@@ -288,10 +292,22 @@ NAMED: dict[str, Criterion] = {each.name: each for each in CRITERIA}
 
 
 def incidents_of(case: Judged) -> tuple[Incident, ...]:
-    """Returns what went wrong in a drive, in order of time."""
+    """Returns what went wrong in a drive, in order of time, but for what the script of the scene ordered."""
     has = (ROUTE if case.is_route else set()) | (OTHERS if case.drive.others is not None else set())
     found = [one for each in CRITERIA if each.find and each.needs <= has for one in each.find(case)]
+    found = [each for each in found if each.kind in MEETING or not _is_ordered(case.drive, each)]
     return tuple(sorted(found, key=lambda each: each.at_time))
+
+
+def _is_ordered(drive: "Drive", incident: Incident) -> bool:
+    """Whether the script had the hand by which something was done: the wheel, or for what is not steered the
+    pedals as well."""
+    hands = {SCRIPT: RETURNS} if incident.kind in STEERED else {SCRIPT: RETURNS, PEDALS: 0.0}
+    return any(
+        each.start < incident.at_time <= each.end + hands[each.by]
+        for each in drive.handovers
+        if each.by in hands
+    )
 
 
 def first_failure(

@@ -1,13 +1,14 @@
 """Finds out why something that a scene prescribes did not happen, though the car kept its lane.
 
-A rehearsal tells whether it happens at the prescribed speed (``traffic.rehearsal``); if not, the test is
-INVALID. If so, the driver was not as fast as prescribed before. It may be slower where somebody ahead whom it
-sees calls for that: who is no more than NEAR seconds away at the prescribed speed and that with which it
-comes from the side or towards the car, or is in its lane and no faster than the car. Then it avoided what was
-prescribed before that began; else that is NOT TESTED. Slower, or faster, is by more than SLACK for LASTS
-seconds. These bounds are ours.
+A rehearsal tells whether it happens at the prescribed speed (``traffic.rehearsal``), or a drive of the test
+robot where the tested car has a script; if not, the test is INVALID. If so, the driver was not as fast as
+prescribed before. It may be slower where somebody ahead whom it sees calls for that: who is no more than NEAR
+seconds away at the prescribed speed and that with which it comes from the side or towards the car, or is in
+its lane and no faster than the car. Then it avoided what was prescribed before that began; else that is NOT
+TESTED. Slower, or faster, is by more than SLACK for LASTS seconds. These bounds are ours.
 """
 
+import math
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
@@ -38,7 +39,13 @@ def told(road: "Road", drive: "Drive", world: "World") -> tuple[Outcome, str]:
     happen, and why."""
     missed = [each.removeprefix(f"{NEVER} ") for each in drive.missed]
     box, prescribed, would = drive.car, world.first_speed, dict[str, float]()
-    if drive.driver != ROBOT:
+    if drive.driver != ROBOT and world.scene.actions:
+        from roadgpt.drive import simulate
+
+        robots = simulate(road, world, ROBOT, drive.seed, keep_driving=True)
+        lacks = {_did(each.removeprefix(f"{NEVER} ")) for each in robots.missed}
+        would = {did: math.inf for did in map(_did, missed) if did not in lacks}
+    elif drive.driver != ROBOT:
         size = Size(box.length, box.width, 2 * box.height)
         others = rehearsed(road, world, drive.seed, size, box.ahead)
         would = others.happened if others else would
@@ -47,6 +54,8 @@ def told(road: "Road", drive: "Drive", world: "World") -> tuple[Outcome, str]:
     if never:
         also = f", nor would it with the test robot at {speed}" * (drive.driver != ROBOT)
         return "INVALID", f"did not happen{also}: {' and '.join(never)}"
+    if world.scene.actions:
+        return "NOT TESTED", f"with the test robot it happens, but not here: {' and '.join(missed)}"
     did, at = max(((_did(each), would[_did(each)]) for each in missed), key=itemgetter(1))
     if wrong := _wrong_speed(road, drive, world, at):
         return "NOT TESTED", f"{did} when a car at the prescribed {speed} has come {at:.0f} m, but {wrong}"

@@ -6,10 +6,20 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from roadgpt.drive.drive import PEDALS
 from roadgpt.drive.drive_monitor import STUCK_AMONG_OTHERS, STUCK_TIME
 from roadgpt.language.table import VEHICLES
 from roadgpt.road.world import share_in_words
-from roadgpt.verdict.criteria import FREE, NAMED, SUCCESS, Criterion, Judged, first_failure, incidents_of
+from roadgpt.verdict.criteria import (
+    FREE,
+    NAMED,
+    STEERED,
+    SUCCESS,
+    Criterion,
+    Judged,
+    first_failure,
+    incidents_of,
+)
 from roadgpt.verdict.oracle import EPSILON, consult, has_departed, margins
 from roadgpt.verdict.verdict import (
     DEPARTURES,
@@ -69,6 +79,8 @@ def judge(
     cause = cast("Cause | None", failed and failed.name)
     hit = next((each for each in incidents if each.contact is not None), None)
     handed_to = drive.handed_to(step) if failed else None
+    if handed_to == PEDALS and (cause in DEPARTURES or cause in STEERED):
+        handed_to = None
     asks = cause == "collision" or bool(handed_to and cause in GIVES_WAY)  # those may be up to the brakes
     found, law, fault = _blame(case, incidents, hit, asks)
     avoidable = found.is_avoidable or found.is_own_doing if found and cause == "collision" else None
@@ -79,7 +91,7 @@ def judge(
         if hit and found and found.is_avoidable and _asks_for_emergency_braking(drive, hit):
             excuse = f"{handed_to} drove there, but emergency braking stays {drive.driver}'s"
             handed_to = None
-    least = float(margins(case.road, drive, world)[: drive.lane_steps].min())
+    least = float(margins(case.road, drive, world)[drive.counts].min())
     least = min(least, -EPSILON) if cause in DEPARTURES[1:] else least
     beyond, (gap, ttc) = most_beyond(case.road, drive, world), _least(case, hit)
     side = _side(case, step) if cause in DEPARTURES else None
@@ -169,7 +181,7 @@ def most_beyond(road: "Road", drive: "Drive", world: "World") -> float:
     from roadgpt.drive.lane_position import MarkingMonitor
 
     body = MarkingMonitor.for_body(road, world, drive.car).along(drive, floor=0.0)
-    return max(float(body[: drive.lane_steps].max()), 0.0)
+    return max(float(body[drive.counts].max()), 0.0)
 
 
 def _counted(incidents: Sequence[Incident], cause: Cause | None) -> str:

@@ -40,8 +40,8 @@ class Oracle(NamedTuple):
     """How far the car was out of its lane during a drive: arrays of shape ``(n,)``, one value per step."""
 
     is_oob: BoolArray
-    """Whether the car is out of its lane, as ``is_outside`` defines it; not at the step at which it reaches
-    the goal or is stuck, at which the competition does not check the lane."""
+    """Whether the car is out of its lane, as ``is_outside`` defines it; not where that does not count, such
+    as at the step at which it reaches the goal or is stuck (``Drive.counts``)."""
     oob_counter: NDArray[np.int64]
     """Number of times the car has gone out of its lane so far."""
     max_oob_percentage: Array
@@ -75,8 +75,7 @@ def is_outside(road: "Road", drive: "Drive", world: "World") -> BoolArray:
     tolerance, or a front tyre is beyond a lane marking, if ``World.limits.lane_departure`` is set."""
     out: BoolArray = drive["outside"] > world.limits.oob_tolerance
     out |= has_departed(road, drive, world)
-    out[drive.lane_steps :] = False
-    return out
+    return out & drive.counts
 
 
 def has_departed(road: "Road", drive: "Drive", world: "World") -> BoolArray:

@@ -63,18 +63,22 @@ class Reference:
 
     def steer(self, view: View) -> Command:
         """Steers for the bend ahead and against the lateral error; follows the planned speed."""
-        steer, _ = self.steered(view, self._line.curvature)
+        steer, _ = self.steered(view)
         command = Command(steer, *pedals(self._line, self._speed, view.s, max(view.vx, 0.0)))
         return self._distance.kept(view, command)
 
-    def steered(self, view: View, curvature: list[float]) -> tuple[float, float]:
+    def steered(
+        self, view: View, curvature: list[float] | None = None, aside: float = 0.0, slope: float = 0.0
+    ) -> tuple[float, float]:
         """Returns the steering angle for the curvature of the car's motion in 1/m at each station of the
-        line, and the lateral error in metres."""
+        line, that of the line if it is not given, and the lateral error in metres. The car is to be
+        ``aside`` metres to the left of the line, and ``slope`` is how that changes per metre."""
         line, v = self._line, max(view.vx, 0.0)
+        curvature = line.curvature if curvature is None else curvature
         i, share = line.place(view.s)
-        error = view.t - line.offset[i] - share * (line.offset[i + 1] - line.offset[i])
+        error = view.t - line.offset[i] - share * (line.offset[i + 1] - line.offset[i]) - aside
         heading = line.heading[i] + share * (line.heading[i + 1] - line.heading[i])
-        turned = math.remainder(view.heading - heading, math.tau)
+        turned = math.remainder(view.heading - heading - math.atan(slope), math.tau)
         j, share = line.place(view.s + self.lag * v)
         bend = curvature[j] + share * (curvature[j + 1] - curvature[j])
         # A road that falls to the right needs force to the left, as a bend to the left does.

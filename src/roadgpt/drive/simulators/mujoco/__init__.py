@@ -58,6 +58,7 @@ class MujocoSimulator:
 
     moves_others = True
     builds_land = True
+    heeds_scripts = True
 
     def __init__(self, car: Car = ETK_LIKE, start_offset: float = 0.0) -> None:
         """Uses this car, which starts ``start_offset`` metres to the left of the middle of its lane."""
@@ -74,7 +75,12 @@ class MujocoSimulator:
     ) -> Drive:
         """Implements `roadgpt.drive.Simulator.simulate`; the seed is only passed to the driver, because the
         physics uses no random numbers."""
-        guard, camera = DriverGuard(driver), camera_of(driver)
+        script = None
+        if world.scene.actions:
+            from roadgpt.drive.script_hand import ScriptHand  # only drives with one load it
+
+            script = ScriptHand(road, world, self.car.box, seed, traffic)
+        guard, camera = DriverGuard(driver, script=script), camera_of(driver)
         vehicle = Vehicle.on(road, world, self.car)
         sensor = None if camera is None else CameraSensor(camera, road, world)
         outlook, station = Outlook(road, world), _NAMES.index("s")
@@ -108,6 +114,8 @@ class MujocoSimulator:
             here = (step * CONTROL, *place, road, world, steer, CONTROL, vx, vy, image)
             view = View._make((*here, *ahead, seen, lights, outlook.signs(now[station])))
             steer, throttle, brake = guard.ask(view)
+            if script is not None:
+                monitor.heed(guard.handed_to, step * CONTROL, CONTROL)
             if monitor.touched is not None:
                 throttle, brake = 0.0, 1.0  # whatever the driver says
             if world.scene.slippery:
@@ -121,4 +129,7 @@ class MujocoSimulator:
         others = None if traffic is None else traffic.tracks()
         has_lights = company is not None and company.has_lights
         handovers = tuple(guard.handovers)
-        return Drive(guard.name, "mujoco", seed, columns, ended, self.car.box, handovers, others, has_lights)
+        told = () if script is None else (script.missed, script.limited, (), guard.unheeded)
+        return Drive(
+            guard.name, "mujoco", seed, columns, ended, self.car.box, handovers, others, has_lights, *told
+        )

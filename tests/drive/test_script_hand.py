@@ -1,0 +1,239 @@
+"""Who has the wheel: what a scene tells the tested car happens, and the driver has its hands back behind it.
+
+Everything is read from the columns of drives; distances and times come from the equations of uniformly
+accelerated motion, not from the code."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.drive import Command, Drive, simulate
+from roadgpt.drive.drive import PEDALS, SCRIPT
+from roadgpt.errors import BriefError, UsageError
+from roadgpt.road import Road, World
+from roadgpt.run import Run, Setup, judged, perform
+
+FRONT = 2.25  # m, from the centre of gravity to the front of the car
+
+
+def run_of(words: str, driver: str = "reference", **setup: object) -> Run:
+    return perform(words, seed=3, setup=Setup(driver=driver, reader="plan", **setup))
+
+
+def drive_of(words: str, driver: str = "reference") -> Drive:
+    found = run_of(words, driver).drive
+    assert found is not None
+    return found
+
+
+def at(drive: Drive, name: str, time: float) -> float:
+    return float(np.interp(time, drive["time"], drive[name]))
+
+
+def hands(drive: Drive) -> list[tuple[str, float, float]]:
+    return [(each.by, round(each.start, 2), round(each.end, 2)) for each in drive.handovers]
+
+
+@pytest.mark.parametrize("driver", ["reference", "lane_centring", "pure_pursuit", "robot"])
+def test_it_brakes_as_told_and_the_driver_goes_on(driver: str) -> None:
+    drive = drive_of("straight 300 && ego v=72: brake 4 to=36 time=3", driver)
+    ((by, start, end),) = hands(drive)
+    assert (by, start) == (PEDALS, 3.0)
+    before, after = (at(drive, "speed", each) for each in (start, end))
+    assert after == pytest.approx(10.0, abs=0.2)
+    assert end - start == pytest.approx((before - 10.0) / 4.0, abs=0.25)  # t = (v0 - v1) / a
+    assert at(drive, "s", end) - at(drive, "s", start) == pytest.approx((before**2 - 100.0) / 8.0, abs=2.0)
+    assert at(drive, "speed", end + 6.0) > 15.0
+
+
+def test_it_stops_before_the_line_waits_and_creeps() -> None:
+    words = "straight 150 // crossroads straight priority // straight 100"
+    drive = drive_of(f"{words} && ego v=50: stop before junction 1, wait 5, creep for=4")
+    stands = drive["time"][drive["speed"] < 0.1]
+    assert 4.5 < stands[-1] - stands[0] < 6.5
+    road = run_of(words).road
+    assert road is not None
+    line = road.passages[0].line
+    front = at(drive, "s", float(stands[0])) + FRONT
+    assert line - 1.8 < front < line
+    creeps = drive["time"] > stands[-1] + 1.5
+    assert drive["speed"][creeps & (drive["time"] < stands[-1] + 4.0)].max() < 6.0 / 3.6
+    (hand,) = hands(drive)
+    assert hand[0] == PEDALS
+    assert at(drive, "speed", hand[2] + 6.0) > 8.0
+
+
+def test_it_waits_for_what_another_one_does() -> None:
+    scene = (
+        "ego v=50: stop 3 s=60, creep after truck 1 brake; truck oncoming gap=300 v=50: brake 4 to=20 time=14"
+    )
+    drive = drive_of(f"straight 400 && {scene}")
+    stands = drive["time"][drive["speed"] < 0.1]
+    assert stands[0] < 11.0
+    assert (
+        14.0 + 7.0 / 4.0 < stands[-1] < 14.0 + 12.0 / 4.0
+    )  # from some 50 to 20 km/h with 4 m/s2, then it rolls
+
+
+def test_standing_it_starts_when_it_is_told() -> None:
+    drive = drive_of("straight 300 && ego v=0: release time=7")
+    assert drive["speed"][drive["time"] < 6.9].max() < 0.05
+    assert at(drive, "speed", 9.0) > 2.0
+    assert hands(drive) == [(PEDALS, 0.0, pytest.approx(7.0, abs=0.05))]
+
+
+@pytest.mark.parametrize(("side", "sign"), [("left", 1), ("right", -1)])
+def test_it_drifts_as_far_and_as_fast_as_told(side: str, sign: int) -> None:
+    drive = drive_of(f"straight 300 && ego v=60: drift {side} shift=1.2 lat=0.5 time=4", "lane_centring")
+    ((by, start, end),) = hands(drive)
+    assert (by, start) == (SCRIPT, 4.0)
+    aside = sign * (drive["t"] - at(drive, "t", start))
+    assert sign * (at(drive, "t", end) - at(drive, "t", start)) == pytest.approx(1.2, abs=0.1)
+    fastest = np.gradient(aside, drive["time"])[(drive["time"] > start) & (drive["time"] < end)].max()
+    assert fastest == pytest.approx(0.5, abs=0.08)
+    assert abs(sign * (at(drive, "t", end + 8.0) - at(drive, "t", start))) < 0.3  # the driver steers back
+
+
+def test_swerving_leads_back() -> None:
+    drive = drive_of("straight 300 && ego v=50: swerve shift=0.6 time=4", "robot")
+    ((_, start, end),) = hands(drive)
+    aside = drive["t"] - at(drive, "t", start)
+    assert aside.max() == pytest.approx(0.6, abs=0.1)
+    assert abs(at(drive, "t", end) - at(drive, "t", start)) < 0.1
+
+
+def test_what_the_script_steers_is_no_departure_but_what_follows_is() -> None:
+    words = "straight 300 && ego v=50: drift left shift=3.5 lat=1 time=4"
+    kept = run_of(words)
+    assert kept.outcome == "PASS"
+    assert kept.drive is not None
+    assert kept.drive["outside"].max() > 0.9
+    assert kept.drive.max_outside < 0.1
+
+    class StaysThere:
+        def steer(self, view: object) -> Command:
+            return Command(0.0, 0.1, 0.0)
+
+    assert kept.road is not None
+    drive = simulate(kept.road, kept.world, StaysThere(), kept.seed)
+    found = judged(replace(kept, drive=drive))
+    (hand,) = hands(drive)
+    assert (found.outcome, found.verdict and found.verdict.cause) == ("FAIL", "out of lane")
+    assert drive["time"][-1] == pytest.approx(hand[2] + 2.0, abs=0.1)
+
+
+class Brakes:
+    """Brakes fully in a second of its drive, and else holds its speed as well as it can."""
+
+    def __init__(self, since: float) -> None:
+        self.since = since
+
+    def steer(self, view: object) -> Command:
+        time = view.time  # type: ignore[attr-defined]
+        return Command(0.0, 0.0, 1.0) if self.since <= time < self.since + 1.0 else Command(0.0, 0.15, 0.0)
+
+
+def straight(words: str) -> tuple[Road, World]:
+    run = run_of(words)
+    assert run.road is not None
+    return run.road, run.world
+
+
+def test_the_stronger_brake_counts() -> None:
+    road, world = straight("straight 300 && ego v=70: brake 2 to=20 time=4")
+    drive = simulate(road, world, Brakes(5.0), 3)
+    slows = -np.gradient(drive["speed"], drive["time"])
+    by_script, by_driver = (slows[np.searchsorted(drive["time"], each)] for each in (4.8, 5.6))
+    assert by_script == pytest.approx(2.0, abs=0.4)
+    assert by_driver > 6.0
+    assert drive.unheeded is not None
+    heard = ~np.isnan(drive.unheeded[:, 0])
+    during = (drive["time"][:-1] >= 4.0 - 1e-6) & (drive["time"][:-1] < drive.handovers[-1].end - 1e-6)
+    assert (heard == during).all()
+    assert drive.unheeded[np.searchsorted(drive["time"], 5.5), 2] == 1.0
+
+
+def test_a_driver_that_brakes_hard_ends_the_script() -> None:
+    road, world = straight("straight 500 && ego v=70: drift left shift=1.5 lat=0.3 time=4, keep 1 time=12")
+    before = simulate(road, world, Brakes(3.5), 3)
+    assert [each.by for each in before.handovers] == [PEDALS]
+    assert "gave up before the tested car drifts" in before.limited[0]
+    during = simulate(road, world, Brakes(6.0), 3)
+    ((by, start, end),) = hands(during)
+    assert (by, start) == (SCRIPT, 4.0)
+    aside = during["t"] - at(during, "t", 4.0)
+    assert aside.max() < 1.2
+    assert abs(at(during, "t", end) - at(during, "t", 4.0)) < 0.2
+    assert "gave up while the tested car drifts" in during.limited[0]
+
+
+def test_who_drove_is_said_and_what_never_happened() -> None:
+    found = run_of("straight 300 && ego v=50: brake 3 to=20 s=60")
+    assert found.drive is not None
+    assert found.drive.shares[PEDALS] == pytest.approx(0.1, abs=0.05)
+    assert "handed over to the script's pedals" in found.description
+    car = "car ahead gap=80 v=60: brake 3 ttc=0.1"
+    late = run_of(f"straight 500 && ego v=50: brake 3 to=20 after car 1 brake; {car}")
+    assert late.outcome == "INVALID"
+    assert "tested car brakes" in late.description
+    avoided = run_of("straight 400 && ego v=50: drift left gap=8; car ahead gap=30 v=30")
+    assert avoided.outcome == "NOT TESTED"
+    slow = run_of("straight 400 && ego v=30: brake 9 to=10 time=12; ice")
+    assert "the tested car brakes with 0." in slow.description
+    assert "not 9.0" in slow.description
+
+
+def test_standing_by_order_is_not_being_stuck() -> None:
+    drive = drive_of("straight 300 && ego v=50: stop 3 s=60, wait 25")
+    assert drive.ended == "goal"
+    assert np.ptp(drive["time"][drive["speed"] < 0.1]) > 24.0
+
+
+def test_a_drive_with_a_script_is_the_same_again_and_in_its_file(tmp_path: object) -> None:
+    words = "straight 300 && ego v=50: brake 2..5 to=10..30 time=2..6, drift right shift=0.2..0.8"
+    one, two = drive_of(words), drive_of(words)
+    assert one.to_bytes() == two.to_bytes()
+    path = tmp_path / "drive.npz"  # type: ignore[operator]
+    path.write_bytes(one.to_bytes())
+    again = Drive.load(path)
+    assert np.array_equal(again.unheeded, one.unheeded, equal_nan=True)  # type: ignore[arg-type]
+    assert again.handovers == one.handovers
+
+
+WORDS = [
+    "| len=300 && ego v=50: brake decel=3 to=20 s=60",
+    "| len=300 && ego: stop before junction 1, wait for=5, creep after car 1 cross; car crossing left: cross",
+    "| len=300 && ego v=0 left: release time=4, drift lat=0.3 shift=0.4 left, swerve",
+]
+
+
+@pytest.mark.parametrize("words", WORDS)
+def test_plans_with_a_script_read_back(words: str) -> None:
+    brief = read_plan(words)
+    assert read_plan(plan(brief)) == brief
+
+
+REFUSED = {
+    "ego: cut_in": "cannot be told to 'cut_in'; it can keep, brake",
+    "ego: brake 3 after car 1 brake": "needs another car that does 'brake'",
+    "ego: wait": "waits without end",
+    "ego: wait, creep": "waits without end",
+    "car ahead: release": "a car has no 'release'",
+}
+
+
+@pytest.mark.parametrize("scene", REFUSED)
+def test_what_cannot_be_told_is_refused_in_a_sentence(scene: str) -> None:
+    with pytest.raises(BriefError, match=REFUSED[scene]):
+        read_plan(f"| len=300 && {scene}")
+
+
+def test_a_simulator_that_heeds_no_script_refuses() -> None:
+    class Simple:
+        moves_others = True
+
+    road, world = straight("straight 300 && ego v=50: brake 3 to=20 s=60")
+    with pytest.raises(UsageError, match="cannot make the tested car do what its scene tells"):
+        simulate(road, world, "reference", simulator=Simple())  # type: ignore[arg-type]
