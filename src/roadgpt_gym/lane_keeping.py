@@ -117,8 +117,8 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
             brief = brief_of(str(options["prompt"]), self._given, self._setup)
         if brief.scene.actions:
             raise UsageError(
-                f"the environment cannot make its car do what a scene tells ({brief.scene.actions[0]}); leave "
-                "that out"
+                "the environment cannot make its car do what a scene tells "
+                f"({brief.scene.actions[0]}); leave that out"
             )
         self._words, self._world = brief.words, world_for(brief, self._given)
         self.road = road = self._drawn(brief)

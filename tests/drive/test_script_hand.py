@@ -3,10 +3,13 @@
 Everything is read from the columns of drives; distances and times come from the equations of uniformly
 accelerated motion, not from the code."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
+import shapely
+import shapely.affinity
 
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.drive import Command, Drive, simulate
@@ -202,10 +205,80 @@ def test_a_drive_with_a_script_is_the_same_again_and_in_its_file(tmp_path: objec
     assert again.handovers == one.handovers
 
 
+def nearest(drive: Drive) -> float:
+    """The least distance between the boxes of the car and of somebody else."""
+    assert drive.others is not None
+    found = np.inf
+    for step in range(0, len(drive), 5):
+        own = shapely.Polygon(drive.corners(step))
+        states = drive.others.at(float(drive["time"][step]))
+        for actor, (x, y, _, heading, _) in zip(drive.others.actors, states.tolist(), strict=True):
+            box = shapely.box(*(np.array(actor.size[:2]) @ np.array([[-0.5, 0, 0.5, 0], [0, -0.5, 0, 0.5]])))
+            there = shapely.affinity.translate(shapely.affinity.rotate(box, heading, (0, 0), True), x, y)
+            found = min(found, own.distance(there))
+    return found
+
+
+@pytest.mark.parametrize("driver", ["reference", "lane_centring", "robot"])
+def test_it_changes_lanes_and_the_driver_keeps_to_the_new_one(driver: str) -> None:
+    scene = "ego v=60 lane=1: change_lane left time=3, change_lane right time=14"
+    run = run_of(f"straight 500 | lanes=2 && {scene}", driver)
+    drive = run.drive
+    assert drive is not None
+    assert run.road is not None
+    width = float(run.world.profile_of(run.road).width(0.0))
+    start = at(drive, "t", 0.0)
+    assert at(drive, "t", 12.0) - start == pytest.approx(width, abs=0.2)
+    assert at(drive, "t", 24.0) - start == pytest.approx(0.0, abs=0.2)
+    assert [each.by for each in drive.handovers] == [SCRIPT] * 2
+    assert run.outcome == "PASS"
+    assert drive.max_outside < 0.05
+
+
+@pytest.mark.parametrize("driver", ["reference", "lane_centring"])
+@pytest.mark.parametrize(
+    ("scene", "clear"),
+    [
+        ("ego v=50: pass car 1; car ahead gap=120 v=0", 1.0),
+        ("ego v=50: pass bicycle 1; bicycle ahead gap=60 v=15 t=-1", 1.5),
+        ("ego v=60: overtake; truck ahead gap=60 v=30", 1.0),
+    ],
+)
+def test_it_goes_around_somebody_and_back(scene: str, clear: float, driver: str) -> None:
+    run = run_of(f"straight 600 && {scene}", driver)
+    drive = run.drive
+    assert drive is not None
+    assert drive.others is not None
+    assert run.outcome == "PASS"
+    assert (
+        nearest(drive) == pytest.approx(clear, abs=0.15) if "overtake" not in scene else nearest(drive) > 1.0
+    )
+    last = drive.others.at(drive.duration)[0]
+    ahead = (drive.middles[-1, :2] - last[:2]) @ np.array([np.cos(last[3]), np.sin(last[3])])
+    assert ahead > 10.0
+    assert at(drive, "t", drive.duration - 2.0) == pytest.approx(at(drive, "t", 0.0), abs=0.2)
+
+
+def test_where_there_is_no_room_the_test_is_refused() -> None:
+    passes = run_of("straight 400 | lanes=1 against=0 && ego v=50: pass car 1; car ahead gap=120 v=0")
+    assert passes.outcome == "INVALID"
+    assert re.search(r"passes car 1 at 1\d\d m, where \d\.\d m of road are missing", passes.description)
+    beside = run_of("straight 400 | lanes=1 against=0 && ego v=50: overtake; truck ahead gap=60 v=30")
+    assert "no oncoming lane" in beside.description
+
+
+def test_roads_get_the_lanes_that_changes_need() -> None:
+    run = run_of("straight 400 && ego v=50: change_lane left time=3")
+    assert run.outcome == "PASS"
+    assert run.road is not None
+    assert len(run.world.profile_of(run.road).along_ids) == 2
+
+
 WORDS = [
     "| len=300 && ego v=50: brake decel=3 to=20 s=60",
     "| len=300 && ego: stop before junction 1, wait for=5, creep after car 1 cross; car crossing left: cross",
     "| len=300 && ego v=0 left: release time=4, drift lat=0.3 shift=0.4 left, swerve",
+    "| len=300 && ego: overtake truck 1 gap=20, pass car 2 left; truck ahead; car ahead; car parked right",
 ]
 
 
@@ -221,6 +294,9 @@ REFUSED = {
     "ego: wait": "waits without end",
     "ego: wait, creep": "waits without end",
     "car ahead: release": "a car has no 'release'",
+    "ego: pass car 2; car ahead": "there is no 'car 2' to pass",
+    "ego: brake car 1; car ahead": "there is no 'car 1' to brake",
+    "truck behind: overtake car 1; car ahead": "only the tested car can overtake 'car 1'",
 }
 
 

@@ -488,7 +488,7 @@ def scene_plan(scene: Scene) -> str:
 
 def action_plan(action: Action) -> str:
     """Returns an action as it stands in a plan, such as "brake decel=6 after turn 1"."""
-    return _marked(action.what, action, AN_ACTION)
+    return _marked(f"{action.what} {action.whom}" if action.whom else action.what, action, AN_ACTION)
 
 
 def _marked(head: str, thing: Role | Action, language: Language) -> str:
@@ -572,6 +572,8 @@ def read_action(text: str) -> Action:
     doing = next((doing for name, doing in MANEUVERS.items() if name == what), None)
     if doing is None:
         raise BriefError(f"a plan has no manoeuvre '{what[:40]}'; there are {', '.join(MANEUVERS)}")
+    if words[:1] and words[0] in ROAD_USERS and words[1:2] and words[1].isdigit():
+        fields["whom"], words = " ".join(words[:2]), words[2:]
     _read_words(fields, words, AN_ACTION, next(iter(doing.numbers), ""))
     return _made(Action, {"what": what, **fields}, text)
 

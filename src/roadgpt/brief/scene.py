@@ -3,6 +3,7 @@
 It is told in the terms of OpenSCENARIO: somebody is somewhere at first, and then does one thing after
 another, each begun by a condition. A number may be a range, from which each drive draws."""
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Any, Literal, Self, get_args
 
@@ -38,6 +39,8 @@ HEAD_ON: tuple[What, ...] = ("drift", "wrong_way", "overtake")
 """What leads who comes towards the tested car into its lane."""
 ON_ITS_WAY: tuple[What, ...] = ("merge", "turn_in", "turn_across", "cross", "run_light", "run_sign")
 """What somebody does on a way of its own, on which it is from the begin on."""
+AROUND: tuple[What, ...] = ("overtake", "pass")
+"""What leads the tested car around somebody."""
 MOST_MORE = 3
 """How many more of a kind there are at most where a scene says "2 or more"."""
 LANES_AWAY = {"lane": 1, "far": 2}
@@ -76,6 +79,8 @@ class Action(Frozen):
     """Something that somebody does. Without one of the CUES, it begins when the one before it has ended."""
 
     what: What
+    whom: Annotated[str, StringConstraints(pattern=r"^[a-z_]+ [1-9][0-9]?$")] | None = None
+    """Whom the tested car overtakes or passes, such as "car 1"; actors of each kind are counted apart."""
     side: Side | None = None
     decel: Amount | None = None
     to: Amount | None = None
@@ -107,8 +112,9 @@ class Action(Frozen):
         return (self.at,) if self.at else ()
 
     def __str__(self) -> str:
-        side = [f"to the {self.side}"] if self.side else []
-        return " ".join([MANEUVERS[self.what].said, *side, *_said(self)])
+        side = [f"{'on' if self.what == 'pass' else 'to'} the {self.side}"] if self.side else []
+        whom = [self.whom.replace("_", " ")] if self.whom else []
+        return " ".join([MANEUVERS[self.what].said, *whom, *side, *_said(self)])
 
 
 class Role(Frozen):
@@ -164,6 +170,8 @@ class Role(Frozen):
         for action in self.actions:
             if self.kind not in MANEUVERS[action.what].who:
                 raise ValueError(f"{one} has no '{action.what}'; leave it out")
+            if action.whom:
+                raise ValueError(f"only the tested car can {action.what} '{action.whom}'; leave that out")
             what, starts = action.what, MANEUVERS[action.what].starts
             if self.where not in starts and (action is first or what in ON_ITS_WAY):
                 raise ValueError(f"who is {spot.said} cannot {what}; that begins from: {', '.join(starts)}")
@@ -331,6 +339,9 @@ class Scene(Frozen):
             if action.what not in OF_ITSELF:
                 can = ", ".join(OF_ITSELF)
                 raise ValueError(f"the tested car cannot be told to '{action.what}'; it can {can}")
+            there = [f"{each.kind} {number}" for number, each in _counted(self.actors)]
+            if action.whom and (action.whom not in there or action.what not in AROUND):
+                raise ValueError(f"there is no '{action.whom}' to {action.what}; name one of the scene")
             follows = self.actions[self.actions.index(action) + 1 :][:1]
             is_open = not follows or not {*CUES} & follows[0].model_fields_set
             if action.what == "wait" and action.duration is None and is_open:
@@ -347,7 +358,8 @@ class Scene(Frozen):
     @property
     def marks(self) -> tuple[Mark, ...]:
         """The parts of the route, and what others do, that say where somebody is and when one acts."""
-        return tuple(mark for each in (*self.actions, *self.actors) for mark in each.marks)
+        own = (mark for each in self.actions for mark in each.marks)
+        return (*own, *(mark for each in self.actors for mark in each.marks))
 
     @property
     def hills(self) -> LandKind:
@@ -373,7 +385,11 @@ class Scene(Frozen):
     @property
     def lanes_beside(self) -> dict[str, int]:
         """How many lanes of its direction it needs to the left and to the right of the tested car's."""
-        found = {"left": 0, "right": 0}
+        found, place = {"left": 0, "right": 0}, 0
+        for action in self.actions:
+            if action.what == "change_lane":
+                place += -1 if action.side == "right" else 1
+                found = {"left": max(found["left"], place), "right": max(found["right"], -place)}
         for role in self.actors:
             away = LANES_AWAY.get(role.where, 0)
             leave = [each.side for each in role.actions if each.what in LEAVES]
@@ -427,6 +443,14 @@ class Scene(Frozen):
         amounts = {each.kind: each.amount for each in self.weather} | {kind: amount}
         air = tuple(Air(kind=each, amount=found) for each in WEATHER if (found := amounts.get(each)))
         return self.model_copy(update={"weather": air})
+
+
+def _counted(roles: Sequence[Role]) -> Iterator[tuple[int, Role]]:
+    """Yields roles with their numbers, from 1 for each kind."""
+    count = Counter[str]()
+    for role in roles:
+        count[role.kind] += 1
+        yield count[role.kind], role
 
 
 def usual_weather(kind: WeatherKind) -> Air:

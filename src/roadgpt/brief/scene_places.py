@@ -11,7 +11,7 @@ from roadgpt.brief.amount import meets, span
 from roadgpt.brief.junctions import ARMS, LANE_KINDS, RAMPS, SIGNS, JunctionClause
 from roadgpt.brief.model import OF_THE_WORDS, Brief, at_least, exactly
 from roadgpt.brief.outline import outline
-from roadgpt.brief.scene import LEAVES, Role, Scene
+from roadgpt.brief.scene import LEAVES, Action, Role, Scene
 from roadgpt.errors import BriefError
 from roadgpt.language.names import JunctionKind, Take, Way, Where
 from roadgpt.language.table import FLOWS
@@ -254,8 +254,9 @@ def _faults(scene: Scene, brief: Brief) -> Iterator[str]:
         leaves = role.where in ("ahead", "behind") and any(each.what in LEAVES for each in role.actions)
         if leaves and along < 2:
             yield f"'{role}' needs {lacks['lane']}"
-    for who in (*scene.actors, *scene.actions):
-        for mark in who.marks:
+    acting: tuple[Role | Action, ...] = (*scene.actors, *scene.actions)
+    for who, marks in ((each, each.marks) for each in acting):
+        for mark in marks:
             if mark.number > (count := counts.get(mark.of, inf)):
                 yield f"'{who}' needs {mark.of} {mark.number}, and there are {count:g}; change one of them"
     if scene.lane and abs(scene.lane) > along:

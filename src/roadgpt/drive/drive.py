@@ -18,6 +18,7 @@ from roadgpt.reading import arrays_in, json_of, strictly
 if TYPE_CHECKING:
     from pandas import DataFrame
 
+    from roadgpt.road import Road, World
     from roadgpt.traffic import Tracks
 
 FloatArray = NDArray[np.float64]
@@ -49,7 +50,7 @@ COLUMNS = {
 }
 """Names of the columns in their order, each with its unit and meaning."""
 TOLD = ("missed", "limited", "stopped")  # of others: tuples of texts
-RARE = ("handovers", "lights", *TOLD)  # of a header, only where they are not empty
+RARE = ("handovers", "moves", "lights", *TOLD)  # of a header, only where they are not empty
 UNHEEDED = "unheeded"
 OTHERS = "others"
 """Array of the states of others: whole numbers (samples, actors, 5); NaN, once GONE, of who is away."""
@@ -105,6 +106,15 @@ class Handover(NamedTuple):
     by: str
 
 
+class LaneMove(NamedTuple):
+    """How the tested car was made to change lanes: between the stations ``start`` and ``end`` in metres its
+    lane moves ``by`` metres to the left."""
+
+    start: float
+    end: float
+    by: float
+
+
 class Columns(Mapping[str, FloatArray]):
     """Maps names to read-only arrays of equal length."""
 
@@ -157,6 +167,8 @@ class Drive:
     """What others did with less than their actions ask for, because the road gives no more, in sentences."""
     stopped: tuple[str, ...] = ()
     """Names of the others whom a contact with the tested car made brake."""
+    moves: tuple[LaneMove, ...] = ()
+    """How the lane that it is to keep to moved, in order."""
     unheeded: FloatArray | None = None
     """What the driver commanded while the script had the wheel or the pedals: steer, throttle and brake,
     shape (n - 1, 3), NaN elsewhere; None if the script had neither."""
@@ -170,6 +182,15 @@ class Drive:
 
     def __len__(self) -> int:
         return len(self.columns["time"])
+
+    def followed(self, road: "Road", world: "World") -> "Road":
+        """Returns a road with the lane that the car was to keep to, where it was made to change lanes."""
+        if not self.moves:
+            return road
+        profile = replace(world.profile_of(road), aside=0.0)
+        for each in self.moves:
+            profile = profile.moved(*each)
+        return road.with_profile(profile)
 
     @property
     def duration(self) -> float:
@@ -305,6 +326,7 @@ def unpacked(header: Any, columns: Columns, states: NDArray[Any] | None) -> Driv
     """Returns the Drive of ``packed``, with its columns; raises ValueError if it is broken."""
     if header["ended"] not in get_args(Ended):
         raise ValueError(f"no drive ends with '{header['ended']}'")
+    missed, limited, stopped = (strictly(tuple[str, ...], header.get(name, ())) for name in TOLD)
     return Drive(
         driver=str(header["driver"]),
         simulator=str(header["simulator"]),
@@ -313,9 +335,12 @@ def unpacked(header: Any, columns: Columns, states: NDArray[Any] | None) -> Driv
         ended=header["ended"],
         car=Box(**{name: float(value) for name, value in header["car"].items()}),
         handovers=strictly(tuple[Handover, ...], header.get("handovers", ())),
+        moves=strictly(tuple[LaneMove, ...], header.get("moves", ())),
         others=None if states is None else _tracks(header[OTHERS], states, float(columns["time"][-1])),
         lights=bool(header.get("lights", False)),
-        **{name: strictly(tuple[str, ...], header.get(name, ())) for name in TOLD},
+        missed=missed,
+        limited=limited,
+        stopped=stopped,
     )
 
 

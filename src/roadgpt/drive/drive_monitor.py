@@ -47,8 +47,9 @@ class DriveMonitor:
         self._length, self._patience = road.length, STUCK_AMONG_OTHERS if among_others else STUCK_TIME
         keep_driving = keep_driving or among_others
         self._tolerance = math.inf if keep_driving else world.limits.oob_tolerance
-        is_watched = world.limits.lane_departure and not keep_driving
-        self._tyres = MarkingMonitor.for_tyres(road, world, box) if is_watched else None
+        self._is_watched = world.limits.lane_departure and not keep_driving
+        self._tyres: MarkingMonitor | None = None
+        self.keep_to(road, world, box)
         # The end of the lane's inner edge; with one lane in each direction it is that of the centre line.
         profile = world.profile_of(road)
         left, right = profile.lane(road.length)
@@ -80,6 +81,10 @@ class DriveMonitor:
         if mishap:
             return mishap
         return "timeout" if time >= self.limit - ROUNDING else None
+
+    def keep_to(self, road: "Road", world: "World", box: Box) -> None:
+        """Sets the road whose driven lane is the one that the car is to keep to."""
+        self._tyres = MarkingMonitor.for_tyres(road, world, box) if self._is_watched else None
 
     def heed(self, by: str | None, time: float, dt: float) -> None:
         """Heeds whether the script has the wheel or the pedals, in the step that begins: then the car may

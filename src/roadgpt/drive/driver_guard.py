@@ -53,7 +53,7 @@ class DriverGuard:
         self.script, self._unheeded = script, list[tuple[float, float, float]]()
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
-        """Calls the driver's ``start``, if it has one."""
+        """Calls the driver's ``start``, if it has one: also when the car was made to change lanes."""
         start = getattr(self._driver, "start", None)
         if start is not None:
             self._called(start, (road, world, seed), 0.0)

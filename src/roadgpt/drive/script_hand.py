@@ -14,26 +14,30 @@ Pedals and wheel are two hands. The driver is asked at every step, also while it
 
 Pedals: the stronger brake counts, the script's or the driver's, and throttle is the script's while the driver
 does not brake harder. Wheel: the script's. The lane does not count while the script steers, nor in the
-RETURNS seconds behind that."""
+RETURNS seconds behind that. Where the car changes lanes, overtakes or passes somebody, the lane that it is to
+keep to moves: the driver is started again for a road whose driven lane is the new one, so that it drives with
+the pedals as its new way needs, and goes on there."""
 
 import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roadgpt.drive.drive import PEDALS, SCRIPT, Box
+from roadgpt.brief.scene import AROUND
+from roadgpt.drive.drive import PEDALS, SCRIPT, Box, LaneMove
 from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.driving_line import BEFORE_LINE, pedals_for
 from roadgpt.drive.keeping_distance import HALTED, LEAST_BRAKE, ROLLS
 from roadgpt.drive.view import View
-from roadgpt.language.table import MANEUVERS
+from roadgpt.errors import SceneError
+from roadgpt.language.table import MANEUVERS, THINGS, VEHICLES
 from roadgpt.network.line import driven_line
 from roadgpt.road.road import START
 from roadgpt.traffic.course import Course, Met
 from roadgpt.traffic.lateral import Lateral, Offsets
 from roadgpt.traffic.longitudinal import Longitudinal
-from roadgpt.traffic.maneuver import STOP, Maneuver, Phase, drawn
-from roadgpt.traffic.places import stretch_of
+from roadgpt.traffic.maneuver import LATERAL, STOP, Maneuver, Phase, drawn
+from roadgpt.traffic.places import SIGN, offset_of, stretch_of
 from roadgpt.traffic.traffic import NEVER, Stage
 from roadgpt.traffic.triggers import Triggers
 
@@ -53,6 +57,16 @@ STEADY = 0.5  # m/s, of changes of speed that are too small to be compared
 NEAREST = 0.3  # m before the place where it stops
 BACK = 0.5  # m/s, with which it is steered back at most
 FAR = 1e6  # m, to nobody
+TIGHTEST = 8.0  # m, the radius of a slow movement sideways: near full lock
+CLEAR, CLEAR_OF_PEOPLE = (
+    1.0,
+    1.5,
+)  # m, beside whom it passes; of people: Germany, StVO, section 5, in towns
+EARLY, FOLLOWING = (
+    1.0,
+    2.0,
+)  # s: before it would have to begin; of headway, with which it follows whom it overtakes
+PASSED = {"overtake": 10.0, "pass": 2.0}  # m, behind its rear, where it goes back
 
 
 class ScriptHand:
@@ -60,7 +74,9 @@ class ScriptHand:
 
     def __init__(self, road: "Road", world: "World", box: Box, seed: int, traffic: "Traffic | None") -> None:
         """Draws the numbers. Raises SceneError if the road has no place that an action names."""
-        self._road, self._world, self._box, self._traffic = road, world, box, traffic
+        self._seed, self._world, self._box, self._traffic = seed, world, box, traffic
+        self.road = road
+        """That whose driven lane is the one that the car is to keep to."""
         self._line, rng = driven_line(road, world), np.random.default_rng([seed, *OWN])
         self._maneuvers, whats = list[Maneuver](), [each.what for each in world.scene.actions]
         self._places = dict[int, float]()
@@ -68,17 +84,9 @@ class ScriptHand:
         for number, action in enumerate(world.scene.actions):
             self._maneuvers.append(Maneuver(action, drawn(action, rng), whats[:number].count(action.what)))
             self._put(number)
-        line = self._line
-        self._course = Course(line, line, box.length, 1, True, False, True, False)
-        self._lateral = Lateral()
-        self._speed = Longitudinal(self._course, self._lateral, "car", world.first_speed, world.first_speed)
-        offsets = Offsets(
-            Stage(road, world, seed), self._course, "ahead", None, {}, None, box.width, box.width
-        )
         self._nobody = Met(FAR, 0.0, box.length, box.width)
-        self._triggers = Triggers(
-            self._course, offsets, self._lateral, self._speed, self._nobody, {}, waits=False
-        )
+        self._lateral, self.moves = Lateral(), tuple[LaneMove, ...]()
+        self._follow(road)
         self._begun, self._phases = 0, list[Phase]()
         self._since = self._planned = self._v = 0.0
         """When the phase began, the speed that it has planned for now, and that at its begin."""
@@ -86,21 +94,48 @@ class ScriptHand:
         """For how many seconds the driver has braked firmly."""
         self._stands = world.scene.speed is not None and world.first_speed == 0
         self._said, self._skipped = list[str](), list[str]()
+        self._around = ""
+        """Who is overtaken or passed."""
+
+    def _follow(self, road: "Road") -> None:
+        """Takes a road whose driven lane is the one that the car is to keep to."""
+        self.road, self._line, box = road, driven_line(road, self._world), self._box
+        self._course = Course(self._line, self._line, box.length, 1, True, False, True, False)
+        self._speed = Longitudinal(
+            self._course, self._lateral, "car", self._world.first_speed, self._world.first_speed
+        )
+        stage = Stage(road, self._world, self._seed)
+        offsets = Offsets(stage, self._course, "ahead", None, {}, None, box.width, box.width)
+        self._triggers = Triggers(
+            self._course, offsets, self._lateral, self._speed, self._nobody, {}, waits=False
+        )
         self._steering: Reference | None = None
+
+    def _move(self, by: float, lateral: float) -> None:
+        """Moves the lane by some metres to the left, with a speed sideways of at most so many m/s."""
+        v, s = self._speed.v, self._line.to_road(self._course.s - self._box.ahead)
+        long = max(v * 1.5 * abs(by) / lateral, math.pi * math.sqrt(abs(by) * TIGHTEST / 2))
+        self.moves = (*self.moves, LaneMove(s, s + long, by))
+        profile = self._world.profile_of(self.road)
+        triggers = self._triggers
+        self._follow(self.road.with_profile(profile.moved(*self.moves[-1])))
+        self._course.s, self._speed.v = self._line.from_road(s) + self._box.ahead, v
+        self._triggers.time, self._triggers.signs = triggers.time, triggers.signs
+        self._lateral.t, self._lateral.slope, self._lateral.slide = 0.0, 0.0, None
 
     def _put(self, number: int) -> None:
         """Finds the place of a maneuver that the scene names by a part of the route."""
         each, line = self._maneuvers[number], self._line
         mark, n = each.action.at, each.n
         if "distance" in n:
-            n["station"] = line.from_road(min(START, self._road.length / 2)) + n.pop("distance")
+            n["station"] = line.from_road(min(START, self.road.length / 2)) + n.pop("distance")
         if mark is None or mark.what:
             return
-        first, last = stretch_of(mark, self._road, line)
+        first, last = stretch_of(mark, self.road, line)
         if each.what not in ("stop", "wait") or mark.word != "before":
             n["station"] = {"after": last, "in": (first + last) / 2, "before": first}[mark.word]
             return
-        ways = [way for way in self._road.passages if abs(line.from_road(way.start) - first) < NEAREST]
+        ways = [way for way in self.road.passages if abs(line.from_road(way.start) - first) < NEAREST]
         at = line.from_road(ways[0].line) if ways and mark.of == "junction" else first
         self._places[number] = at - BEFORE_LINE
 
@@ -155,21 +190,25 @@ class ScriptHand:
         each = self._maneuvers[number]
         return f"the tested car {MANEUVERS[each.what].said}{' again' * each.before}"
 
-    def _met(self) -> Met:
-        """Returns who is ahead in the lane of the tested car."""
+    def _met(self, name: str | None = None) -> tuple[str, Met, float]:
+        """Returns who is ahead in the lane of the tested car, or has a name: its name, how it is seen from
+        there, and how far its middle is to the left of that."""
         if self._traffic is None:
-            return self._nobody
-        states = self._traffic.at(self._triggers.time)
-        sizes = np.array([each.size[:2] for each in self._traffic.actors])
-        boxes = self._line.boxes(states, sizes)
+            return "", self._nobody, 0.0
+        actors, states = self._traffic.actors, self._traffic.at(self._triggers.time)
+        boxes = self._line.boxes(states, np.array([each.size[:2] for each in actors]))
         ahead = boxes.along - self._course.s
-        ahead[~((ahead > 0) & self._line.holds(boxes))] = np.inf
-        if not np.isfinite(ahead).any():
-            return self._nobody
-        first = int(ahead.argmin())
-        return Met(
-            float(boxes.along[first]), float(boxes.velocity[first, 0]), *map(float, 2 * boxes.size[first])
+        is_it = (
+            np.array([each.name == name for each in actors])
+            if name
+            else ((ahead > 0) & self._line.holds(boxes))
         )
+        if not (is_it & np.isfinite(ahead)).any():
+            return "", self._nobody, 0.0
+        first = int(np.where(is_it & np.isfinite(ahead), ahead, np.inf).argmin())
+        half, wide = (float(each[first]) for each in boxes.reach)
+        met = Met(float(boxes.along[first]), float(boxes.velocity[first, 0]), 2 * half, 2 * wide)
+        return actors[first].name, met, float(boxes.t[first])
 
     def _begin_in_time(self, view: View) -> None:
         """Begins what is next if it is time."""
@@ -178,9 +217,11 @@ class ScriptHand:
             if each.event and self._traffic is not None:
                 self._triggers.events = self._traffic.events
             if {"gap", "headway", "ttc"} & {*each.n}:
-                self._triggers.met = self._met()
+                self._triggers.met = self._met()[1]
             before = None if not number else math.inf if self._phases else 0.0
-            if number in self._places:
+            if each.what in AROUND and each.is_open:
+                wait = self._until_around(each, before)
+            elif number in self._places:
                 left = self._places[number] - self._front
                 if left < 0:
                     self._skipped.append(f"{NEVER} {self._did(number)}: it had passed the place before")
@@ -197,12 +238,68 @@ class ScriptHand:
                 self._phases = []
                 continue
             self._lateral.t, self._lateral.slide = self._aside(view), None
-            self._phases = [] if each.what == "release" else self._triggers.phases(each)
+            if each.what in (*AROUND, "change_lane"):
+                self._go_aside(each, view)
+            else:
+                self._phases = [] if each.what == "release" else self._triggers.phases(each)
             rest = self._maneuvers[self._begun :]
             if each.what == "stop" and "duration" not in each.n and rest and not rest[0].is_open:
                 self._phases.append(Phase(lasts=math.inf))
             if self._phases:
                 self._enter(view)
+
+    def _until_around(self, maneuver: Maneuver, before: float | None) -> float:
+        """Returns in how many seconds it begins to go around somebody."""
+        name, met, t = self._met(maneuver.action.whom)
+        if before == math.inf or not name:
+            return math.inf
+        by, v = self._by(maneuver, name, met, t), self._speed.v
+        lasts = 1.5 * abs(by) / self._sideways(maneuver)
+        gap = met.s - self._course.s - (met.length + self._box.length) / 2
+        return 0.0 if gap <= max((v - met.v) * (lasts + EARLY), FOLLOWING * v + NEAREST) else math.inf
+
+    @staticmethod
+    def _sideways(maneuver: Maneuver) -> float:
+        return maneuver.n.get("lateral", LATERAL[maneuver.what])
+
+    def _by(self, maneuver: Maneuver, name: str, met: Met, t: float) -> float:
+        """Returns by how many metres to the left it goes around somebody."""
+        profile, s = self._world.profile_of(self.road), self._line.to_road(self._course.s)
+        inner = "right" if profile.left_hand else "left"
+        side = maneuver.action.side or inner
+        if maneuver.what == "pass":
+            is_person = name.rpartition(" ")[0] not in (*VEHICLES, *THINGS) or name.startswith("bicycle")
+            free = (met.width + self._box.width) / 2 + (CLEAR_OF_PEOPLE if is_person else CLEAR)
+            by = t + SIGN[side] * free
+            return by if by * SIGN[side] > 0 else 0.0
+        try:
+            return offset_of("lane", inner, s, self.road, self._world, self._box.width)
+        except SceneError:
+            return offset_of("oncoming", None, s, self.road, self._world, self._box.width)
+
+    def _go_aside(self, maneuver: Maneuver, view: View) -> None:
+        """Begins to change lanes, or to go around somebody; raises SceneError if there is no lane."""
+        lateral = self._sideways(maneuver)
+        if maneuver.what == "change_lane":
+            at = self._line.to_road(self._course.s), self.road, self._world, self._box.width
+            self._move(offset_of("lane", maneuver.action.side, *at), lateral)
+            self._phases = [Phase(until="there")]
+            return
+        self._around, met, t = self._met(maneuver.action.whom)
+        by = self._by(maneuver, self._around, met, t) if self._around else 0.0
+        if by:
+            self._refuse_off_road(maneuver, by, self._line.to_road(met.s))
+            self._move(by, lateral)
+        goal = maneuver.n.get("to")
+        self._phases = [Phase(goal, until="there"), Phase(goal, until="passed"), Phase(goal, until="there")]
+
+    def _refuse_off_road(self, maneuver: Maneuver, by: float, s: float) -> None:
+        profile = self._world.profile_of(self.road)
+        t, edges = float(profile.middle(s)) + by, profile.edges(s)
+        lacks = self._box.width / 2 + max(t - float(edges.left), float(edges.right) - t)
+        if lacks > 0:
+            does = f"the tested car {MANEUVERS[maneuver.what].said} {self._around}"
+            raise SceneError(f"{does} at {s:.0f} m, where {lacks:.1f} m of road are missing")
 
     @staticmethod
     def _decel(maneuver: Maneuver) -> float:
@@ -210,11 +307,14 @@ class ScriptHand:
 
     def _aside(self, view: View) -> float:
         """Returns how far the car is to the left of the middle of its lane."""
-        return view.t - float(self._world.profile_of(self._road).middle(view.s))
+        return view.t - float(self._world.profile_of(self.road).middle(view.s))
 
     def _enter(self, view: View) -> None:
         """Begins the phase that is next."""
         phase = self._phases[0]
+        if self._around and len(self._phases) == 1 and self.moves:
+            self._move(-self.moves[-1].by, self._sideways(self._maneuvers[self._begun - 1]))
+            self._around = ""
         self._since, self._planned, self._v = view.time, self._speed.v, self._speed.v
         if phase.to is not None:
             self._lateral.slide_to(phase.to, phase.slides)
@@ -240,7 +340,14 @@ class ScriptHand:
         if phase.lasts is not None and lasted >= phase.lasts - 1e-6:
             return True
         if phase.until == "there":
-            return self._lateral.slide is None
+            gone = (
+                not self.moves or self._line.to_road(self._course.s) - self._box.ahead >= self.moves[-1].end
+            )
+            return gone and self._lateral.slide is None
+        if phase.until == "passed":
+            _, met, _ = self._met(self._around)
+            rear = self._course.s - self._box.length / 2 - met.s - met.length / 2
+            return met is self._nobody or rear > PASSED[self._maneuvers[self._begun - 1].what]
         if phase.until != "speed" or phase.goal is None:
             return False
         v, least = self._speed.v, HALTED if phase.goal == 0 else REACHED
@@ -268,13 +375,13 @@ class ScriptHand:
         if halts and number in self._places:
             left, decel = self._places[number] - self._front, self._decel(self._maneuvers[number])
             wanted = PULL * (math.sqrt(2 * decel * max(left, 0.0)) - v) - decel
-        return pedals_for(wanted, float(self._road.grade(view.s)), v)
+        return pedals_for(wanted, float(self.road.grade(view.s)), v)
 
     def _steered(self, view: View) -> float:
         """Returns the angle of the front wheels with which the car follows its place sideways."""
         if self._steering is None:
             self._steering = Reference()
-            self._steering.start(self._road, self._world, 0)
+            self._steering.start(self.road, self._world, 0)
         return self._steering.steered(view, aside=self._lateral.t, slope=self._lateral.slope)[0]
 
     @property

@@ -99,6 +99,8 @@ class Profile:
             and those on the right: the element ``laneOffset`` of OpenDRIVE.
         left_hand: Whether traffic drives on the left: the lanes on the left then lead along the road, and
             those on the right against it.
+        aside: Where the tested car is to keep, in metres to the left of its lane, after it was made to change
+            lanes or to pass somebody (``moved``); its lane moves with it.
 
     Raises:
         ValueError: ``driven`` is not the index of a driving lane, a width is negative, or a width, the
@@ -111,6 +113,7 @@ class Profile:
     superelevation_angle: CubicProfile | None = None
     offset: Width = 0.0
     left_hand: bool = False
+    aside: Width = 0.0
 
     def __post_init__(self) -> None:
         if self.side * (1 + self.driven) not in (self.along_ids or (self.side,)):
@@ -278,11 +281,23 @@ class Profile:
         """Returns the offset of the middle of the driven lane."""
         number = self.driven_id
         inside = self.left[: number - 1] if number > 0 else self.right[: -1 - number]
-        return self.centre(s) + (1 if number > 0 else -1) * (_sum(inside, s) + self.width(s) / 2)
+        inner = (1 if number > 0 else -1) * (_sum(inside, s) + self.width(s) / 2)
+        return self.centre(s) + inner + _at(self.aside, s)
 
     def lane(self, s: ArrayLike) -> Edges:
         """Returns the offsets of the edges of the driven lane."""
-        return self.edges_of(self.driven_id, s)
+        return self._beside(self.edges_of(self.driven_id, s), s)
+
+    def _beside(self, edges: Edges, s: ArrayLike) -> Edges:
+        return Edges(*(each + _at(self.aside, s) for each in edges))
+
+    def moved(self, start: float, end: float, by: float) -> "Profile":
+        """Returns the same with the driven lane moved sideways between two stations, by metres to the left,
+        and so far from there on. The slope is 0 at both ends."""
+        base, long = float(_at(self.aside, start)), end - start
+        rows = [row for row in as_cubics(self.aside).rows if row[0] < start]
+        rows.append((start, (base, 0.0, 3 * by / long**2, -2 * by / long**3)))
+        return replace(self, aside=CubicProfile.of_rows([*rows, (end, (base + by, 0.0, 0.0, 0.0))]))
 
     def edges(self, s: ArrayLike) -> Edges:
         """Returns the offsets of the edges of the carriageway, from the outermost driving lane on the left to
@@ -348,7 +363,7 @@ class Profile:
         boundary of the lane has no marking, the offset of the boundary is returned."""
         at = self.boundaries_to_left
         (_, left), (_, right) = self._painted_boundaries(s)[at : at + 2]
-        return Edges(left.left, right.right)
+        return self._beside(Edges(left.left, right.right), s)
 
     def superelevation(self, s: ArrayLike) -> Array:
         """Returns the superelevation in radians, positive where the surface falls to the right."""

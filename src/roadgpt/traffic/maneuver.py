@@ -18,7 +18,7 @@ CHANGE = 2.0  # m/s^2
 TURNING = 20.0 / 3.6  # m/s, of vehicles that turn at a junction, at most
 LATERAL: Mapping[What, float] = {
     "swerve": 0.5, "drift": 0.5, "cut_in": 1.5, "cut_out": 1.5, "change_lane": 1.0, "overtake": 1.5,
-    "pull_out": 1.0, "wrong_way": 1.0,
+    "pull_out": 1.0, "wrong_way": 1.0, "pass": 1.0,
 }  # fmt: skip
 """The greatest speed sideways in m/s."""
 PATH, RUNS, RUNNING_PATH = 1.0, 6.0 / 3.6, 1.5

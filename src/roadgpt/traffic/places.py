@@ -3,6 +3,7 @@
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -80,15 +81,16 @@ def _lanes_beside(s: float, road: "Road", world: "World", width: float) -> dict[
         leg = road.legs[min(max(bisect_right(road.starts, s) - 1, 0), len(road.legs) - 1)]
         member, lane = road.network.road(leg.road), leg.lane
         station, t = (float(each) for each in member.road.locate(*road.at(s, t)[:2]))
-        profile = member.profile
+        profile = replace(member.profile, aside=profile.aside)
     is_along = profile.leads_along(lane)
     ids = (profile.along_ids, profile.against_ids)[:: 1 if is_along else -1]
     edges = [(each, profile.edges_of(each, station)) for each in (*ids[0], *ids[1])]
     found: dict[str, list[float]] = {"left": [], "right": [], "oncoming": []}
     for each, (left, right) in edges:
-        if each != lane and left - right >= width:
-            offset = float((left + right) / 2 - t) * (1 if is_along else -1)
-            same = "left" if (each > lane) == is_along else "right"
+        offset = float((left + right) / 2 - t) * (1 if is_along else -1)
+        is_own = each == lane if profile.aside == 0.0 else abs(offset) <= (left - right) / 2
+        if not is_own and left - right >= width:
+            same = "left" if offset > 0 else "right"
             found[same if each in ids[0] else "oncoming"].append(offset)
     return {name: sorted(offsets, key=abs) for name, offsets in found.items()}
 

@@ -71,7 +71,8 @@ def judge(
 
     Raises:
         UsageError: The drive was stopped at a smaller tolerance than ``world.limits.oob_tolerance``."""
-    case = Judged(world.lay(road), drive, world)
+    laid = world.lay(road)
+    case = Judged(drive.followed(laid, world), drive, world)
     incidents = incidents_of(case)
     step, failed = first_failure(case, incidents, known if drive.others is None else None)
     behind = _behind(case) if failed and failed.name in ("stuck", "timeout") else ""
@@ -108,7 +109,7 @@ def judge(
     if failed is None and drive.missed:
         from roadgpt.verdict.happened import told
 
-        outcome, why = told(case.road, drive, world)
+        outcome, why = told(laid, drive, world)
         description = f"{description}; {why}" if outcome == "PASS" else f"{why}; {description}"
     elif drive.missed:
         from roadgpt.traffic.traffic import LATE

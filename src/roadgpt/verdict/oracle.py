@@ -55,7 +55,7 @@ class Oracle(NamedTuple):
 
 def consult(road: "Road", drive: "Drive", world: "World") -> Oracle:
     """Returns the out-of-bounds values of all steps of a drive."""
-    share = drive["outside"]
+    share, road = drive["outside"], drive.followed(road, world)
     out = is_outside(road, drive, world)
     went = out & ~np.concatenate([[False], out[:-1]])
     counter = np.cumsum(went)
@@ -85,7 +85,7 @@ def has_departed(road: "Road", drive: "Drive", world: "World") -> BoolArray:
         return np.zeros(len(drive), bool)
     from roadgpt.drive.lane_position import MarkingMonitor
 
-    beyond = MarkingMonitor.for_tyres(road, world, drive.car).along(drive)
+    beyond = MarkingMonitor.for_tyres(drive.followed(road, world), world, drive.car).along(drive)
     gone: BoolArray = beyond > 0
     # A drive that ended with a departure has departed at its last step, in spite of rounding.
     gone[-1] |= drive.ended == "out_of_lane" and beyond[-1] > -ROUNDING
@@ -132,7 +132,7 @@ def allowed_overhang(tolerance: float, box: LateralExtent) -> Array:
 def margins(road: "Road", drive: "Drive", world: "World") -> Array:
     """Returns the margin in metres at every step of a drive, shape ``(n,)``: negative exactly where the car
     is out of its lane, and 0 where it is not, but its box extends beyond the carriageway and its shoulder."""
-    box = lateral_extent(road, drive)
+    box, road = lateral_extent(road, drive), drive.followed(road, world)
     s, profile = drive["s"], world.profile_of(road)
     half, middle, rims = profile.width(s) / 2, profile.middle(s), profile.rims(s)
     in_lane = half + allowed_overhang(world.limits.oob_tolerance, box) - np.abs(box.middle - middle)

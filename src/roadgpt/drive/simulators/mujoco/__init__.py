@@ -14,6 +14,7 @@ from roadgpt.drive.camera_sensor import CameraSensor, camera_of
 from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive
 from roadgpt.drive.drive_monitor import DriveMonitor
 from roadgpt.drive.driver_guard import DriverGuard
+from roadgpt.drive.lane_position import LanePolygon
 from roadgpt.drive.outlook import Outlook
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Axle, Car, Tyre
 from roadgpt.drive.simulators.mujoco.vehicle import CONTROL, Vehicle, plane
@@ -116,6 +117,11 @@ class MujocoSimulator:
             steer, throttle, brake = guard.ask(view)
             if script is not None:
                 monitor.heed(guard.handed_to, step * CONTROL, CONTROL)
+                if script.road is not road:
+                    road = script.road
+                    vehicle.keep_to(LanePolygon.along(road, world))
+                    monitor.keep_to(road, world, self.car.box)
+                    guard.start(road, world, seed)
             if monitor.touched is not None:
                 throttle, brake = 0.0, 1.0  # whatever the driver says
             if world.scene.slippery:
@@ -129,7 +135,7 @@ class MujocoSimulator:
         others = None if traffic is None else traffic.tracks()
         has_lights = company is not None and company.has_lights
         handovers = tuple(guard.handovers)
-        told = () if script is None else (script.missed, script.limited, (), guard.unheeded)
+        told = () if script is None else (script.missed, script.limited, (), script.moves, guard.unheeded)
         return Drive(
             guard.name, "mujoco", seed, columns, ended, self.car.box, handovers, others, has_lights, *told
         )

@@ -153,8 +153,15 @@ class Vehicle:
 
     def stand_on(self, friction: float) -> None:
         """Sets the friction of the ground under all wheels."""
+        self._change(friction=friction)
+
+    def keep_to(self, lane: LanePolygon) -> None:
+        """Sets the lane that the column ``outside`` is about."""
+        self._change(lane=lane)
+
+    def _change(self, **of_ground: Any) -> None:
         *before, ground, car = self._parts
-        self._ground = ground._replace(friction=friction)
+        self._ground = ground._replace(**of_ground)
         self._parts = (*before, self._ground, car)
 
     def see(self) -> dict[str, float]:
