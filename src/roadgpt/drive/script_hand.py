@@ -30,6 +30,7 @@ from roadgpt.drive.driving_line import BEFORE_LINE, pedals_for
 from roadgpt.drive.keeping_distance import HALTED, LEAST_BRAKE, ROLLS
 from roadgpt.drive.view import View
 from roadgpt.errors import SceneError
+from roadgpt.language.names import Side
 from roadgpt.language.table import MANEUVERS, THINGS, VEHICLES
 from roadgpt.network.line import driven_line
 from roadgpt.road.road import START
@@ -265,7 +266,7 @@ class ScriptHand:
     def _by(self, maneuver: Maneuver, name: str, met: Met, t: float) -> float:
         """Returns by how many metres to the left it goes around somebody."""
         profile, s = self._world.profile_of(self.road), self._line.to_road(self._course.s)
-        inner = "right" if profile.left_hand else "left"
+        inner: Side = "right" if profile.left_hand else "left"
         side = maneuver.action.side or inner
         if maneuver.what == "pass":
             is_person = name.rpartition(" ")[0] not in (*VEHICLES, *THINGS) or name.startswith("bicycle")
