@@ -80,6 +80,18 @@ def test_it_waits_for_what_another_one_does() -> None:
     )  # from some 50 to 20 km/h with 4 m/s2, then it rolls
 
 
+def test_others_act_when_the_tested_car_does() -> None:
+    car = "car behind gap=30 v=50: brake 6 with ego stop, speed 30 after ego stop"
+    drive = drive_of(f"straight 400 && ego v=50: stop 4 time=5, wait 6; {car}")
+    assert drive.others is not None
+    speed = drive.others.states[:, 0, 4]
+    slows = drive.others.time[np.argmax(speed < speed[40] - 0.1)]
+    assert slows == pytest.approx(5.0, abs=0.25)
+    rest = drive["time"][np.argmax(drive["speed"] < 0.1)]
+    rolls = drive.others.time[(drive.others.time > slows + 1.0) & (np.gradient(speed) > 0.05)][0]
+    assert rolls == pytest.approx(rest, abs=0.3)
+
+
 def test_standing_it_starts_when_it_is_told() -> None:
     drive = drive_of("straight 300 && ego v=0: release time=7")
     assert drive["speed"][drive["time"] < 6.9].max() < 0.05
@@ -278,6 +290,7 @@ WORDS = [
     "| len=300 && ego v=50: brake decel=3 to=20 s=60",
     "| len=300 && ego: stop before junction 1, wait for=5, creep after car 1 cross; car crossing left: cross",
     "| len=300 && ego v=0 left: release time=4, drift lat=0.3 shift=0.4 left, swerve",
+    "| len=300 && ego: stop; car behind: stop with ego stop, speed after ego stop",
     "| len=300 && ego: overtake truck 1 gap=20, pass car 2 left; truck ahead; car ahead; car parked right",
 ]
 
@@ -295,6 +308,7 @@ REFUSED = {
     "ego: wait, creep": "waits without end",
     "car ahead: release": "a car has no 'release'",
     "ego: pass car 2; car ahead": "there is no 'car 2' to pass",
+    "ego: brake; car behind: stop with ego stop": "needs a tested car that is told to 'stop'",
     "ego: brake car 1; car ahead": "there is no 'car 1' to brake",
     "truck behind: overtake car 1; car ahead": "only the tested car can overtake 'car 1'",
 }

@@ -210,7 +210,7 @@ CONDITIONS: Mapping[str, tuple[str, str]] = {
 }
 MARK = re.compile(
     r"\b(?:(?:after|before|in) (?:turn|junction) (?:-1|[1-9]\d?)|(?:after|with) "
-    rf"(?:{'|'.join(ROAD_USERS)}) [1-9]\d? (?:{'|'.join(MANEUVERS)}))(?!\S)"
+    rf"(?:{TESTED_CAR}|(?:{'|'.join(ROAD_USERS)}) [1-9]\d?) (?:{'|'.join(MANEUVERS)}))(?!\S)"
 )
 """A part of the route, or what another actor does, as in "after turn 1" and "with truck 1 brake"."""
 
@@ -581,6 +581,7 @@ def read_action(text: str) -> Action:
 def _without_mark(text: str, fields: dict[str, object]) -> list[str]:
     """Returns the words of a text without its places and events, which are put into the fields."""
     for found in MARK.findall(text):
-        mark = dict(zip(("word", "of", "number", "what"), found.split(), strict=False))
+        words = found.replace(f" {TESTED_CAR} ", f" {TESTED_CAR} 1 ").split()
+        mark = dict(zip(("word", "of", "number", "what"), words, strict=False))
         _set(fields, "at", Mark.model_validate(mark))
     return MARK.sub(" ", text).split()

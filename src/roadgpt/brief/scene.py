@@ -55,23 +55,25 @@ ONE_OF = (
 
 class Mark(Frozen):
     """A part of the route, as in "after turn 1", or what somebody else does: its end, as in "after truck 1
-    brake", or its begin, as in "with truck 1 brake"."""
+    brake" or "after ego stop", or its begin, as in "with truck 1 brake"."""
 
     word: Literal["after", "before", "in", "with"]
-    of: Literal["turn", "junction"] | ActorKind
+    of: Literal["turn", "junction", "ego"] | ActorKind
     number: int
     """Turns, junctions and actors of each kind are counted apart, from 1; -1 is the last turn or junction."""
     what: What | None = None
 
     def __str__(self) -> str:
-        return " ".join(filter(None, [self.word, self.of, str(self.number), self.what]))
+        number = "" if self.of == "ego" else str(self.number)
+        return " ".join(filter(None, [self.word, self.of, number, self.what]))
 
     @property
     def said(self) -> str:
         """The condition in words."""
         if self.what is None:
             return f"{self.word} the last {self.of}" if self.number < 0 else str(self)
-        said = f"{self.of.replace('_', ' ')} {self.number} {MANEUVERS[self.what].said}"
+        who = "the tested car" if self.of == "ego" else f"{self.of.replace('_', ' ')} {self.number}"
+        said = f"{who} {MANEUVERS[self.what].said}"
         return f"{'when' if self.word == 'with' else self.word} {said}"
 
 
@@ -350,6 +352,10 @@ class Scene(Frozen):
                 )
         for who, actions in ((None, self.actions), *((role, role.actions) for role in self.actors)):
             for event in (action.at for action in actions if action.at and action.at.what):
+                if event.of == "ego":
+                    if who is None or event.what not in [each.what for each in self.actions]:
+                        raise ValueError(f"'{event}' needs a tested car that is told to '{event.what}'")
+                    continue
                 same = [each for each in self.actors if each.kind == event.of][event.number - 1 :][:1]
                 if not same or same[0] is who or event.what not in [each.what for each in same[0].actions]:
                     raise ValueError(f"'{event}' needs another {event.of} that does '{event.what}'; name one")

@@ -238,6 +238,9 @@ class ScriptHand:
                 self._give_up(f"before {self._did(number)}", view)
                 self._phases = []
                 continue
+            if self._phases:
+                self._tell("after", self._maneuvers[number - 1], view)
+            self._tell("with", each, view)
             self._lateral.t, self._lateral.slide = self._aside(view), None
             if each.what in (*AROUND, "change_lane"):
                 self._go_aside(each, view)
@@ -248,6 +251,10 @@ class ScriptHand:
                 self._phases.append(Phase(lasts=math.inf))
             if self._phases:
                 self._enter(view)
+
+    def _tell(self, word: str, maneuver: Maneuver, view: View) -> None:
+        if self._traffic is not None:
+            self._traffic.tell((word, "ego", "1", maneuver.what), view.time)
 
     def _until_around(self, maneuver: Maneuver, before: float | None) -> float:
         """Returns in how many seconds it begins to go around somebody."""
@@ -327,6 +334,8 @@ class ScriptHand:
             self._compare(phase, view.time - self._since)
             if self._phases:
                 self._enter(view)
+            if not self._phases or self._phases[0].lasts == math.inf:
+                self._tell("after", self._maneuvers[self._begun - 1], view)
         if not self._phases:
             return
         phase, v = self._phases[0], self._speed.v

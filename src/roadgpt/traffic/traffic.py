@@ -118,6 +118,11 @@ class Traffic:
         now, after, share = self.around(time)
         return np.asarray((1 - share) * now + share * after) if share else now
 
+    def tell(self, event: tuple[str, ...], time: float) -> None:
+        """Tells the actors of a scene when something that the tested car does began or ended."""
+        for mover, _ in self._movers:
+            getattr(mover, "events", {})[event] = time
+
     @property
     def events(self) -> dict[tuple[str, ...], float]:
         """When what the actors of a scene do has begun and ended, in seconds, by ``Maneuver.event``."""
