@@ -86,12 +86,12 @@ class DriveMonitor:
         """Sets the road whose driven lane is the one that the car is to keep to."""
         self._tyres = MarkingMonitor.for_tyres(road, world, box) if self._is_watched else None
 
-    def heed(self, by: str | None, time: float, dt: float) -> None:
+    def heed(self, by: str | None, has_end: bool, time: float, dt: float) -> None:
         """Heeds whether the script has the wheel or the pedals, in the step that begins: then the car may
-        be outside its lane, and stand as long as the script wants."""
+        be outside its lane, and stand as long as the script wants, if that has an end."""
         if by == SCRIPT:
             self._free_until = time + dt + RETURNS
-        if by in (SCRIPT, PEDALS):
+        if by in (SCRIPT, PEDALS) and has_end:
             self._since, self.limit = time + dt, self.limit + dt
 
     def touch(self, time: float) -> None:

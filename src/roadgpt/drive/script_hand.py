@@ -395,6 +395,12 @@ class ScriptHand:
         return self._steering.steered(view, aside=self._lateral.t, slope=self._lateral.slope)[0]
 
     @property
+    def has_end(self) -> bool:
+        """Whether what it does ends by itself, and the car may stand until then."""
+        rest = self._maneuvers[self._begun :]
+        return all(each.lasts != math.inf for each in self._phases) or bool(rest and "time" in rest[0].n)
+
+    @property
     def missed(self) -> tuple[str, ...]:
         """What the car was told to do and has not begun so far, in sentences."""
         found = list(self._skipped)

@@ -116,7 +116,7 @@ class MujocoSimulator:
             view = View._make((*here, *ahead, seen, lights, outlook.signs(now[station])))
             steer, throttle, brake = guard.ask(view)
             if script is not None:
-                monitor.heed(guard.handed_to, step * CONTROL, CONTROL)
+                monitor.heed(guard.handed_to, script.has_end, step * CONTROL, CONTROL)
                 if script.road is not road:
                     road = script.road
                     vehicle.keep_to(LanePolygon.along(road, world))
