@@ -304,6 +304,7 @@ def test_plans_with_a_script_read_back(words: str) -> None:
 REFUSED = {
     "ego: cut_in": "cannot be told to 'cut_in'; it can keep, brake",
     "ego: brake 3 after car 1 brake": "needs another car that does 'brake'",
+    "ego v=0: brake s=60": "stands until it brakes at 60 metres from the start, and so never comes there",
     "ego: wait": "waits without end",
     "ego: wait, creep": "waits without end",
     "car ahead: release": "a car has no 'release'",

@@ -337,6 +337,12 @@ class Scene(Frozen):
                 f"lanes count from 1 to {MOST_LANES} from the kerb, or from -1 from the innermost one, and"
                 f" there is no lane {self.lane}; write for example lane=1"
             )
+        for action in self.actions[:1] if span(self.speed).hi == 0 else ():
+            if action.station or action.distance or (action.at and not action.at.what):
+                raise ValueError(
+                    f"the tested car stands until it {action}, and so never comes there; give time=, or what "
+                    "somebody else does"
+                )
         for action in self.actions:
             if action.what not in OF_ITSELF:
                 can = ", ".join(OF_ITSELF)

@@ -397,8 +397,9 @@ class ScriptHand:
     @property
     def has_end(self) -> bool:
         """Whether what it does ends by itself, and the car may stand until then."""
-        rest = self._maneuvers[self._begun :]
-        return all(each.lasts != math.inf for each in self._phases) or bool(rest and "time" in rest[0].n)
+        if self._phases and all(each.lasts != math.inf for each in self._phases):
+            return True
+        return any("time" in each.n for each in self._maneuvers[self._begun :][:1])
 
     @property
     def missed(self) -> tuple[str, ...]:

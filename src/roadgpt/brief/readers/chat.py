@@ -19,6 +19,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import BETWEEN, JUNCTIONS, KINDS, SCENE, WHOLE, is_junction, is_map, read_plan
 from roadgpt.brief.refusal import EXAMPLE, MOST_CHARACTERS
+from roadgpt.brief.scene import AROUND
 from roadgpt.chat import Chat, ChatSettings, Message, configured, open_chat
 from roadgpt.chat.answer import fixed_description
 from roadgpt.errors import BriefError, EditError, RoadGPTError
@@ -27,6 +28,8 @@ from roadgpt.language.table import (
     LIGHTS,
     MANEUVERS,
     NUMBERS,
+    OF_ITSELF,
+    OF_OTHERS,
     PLACES,
     ROAD_USERS,
     ROADS,
@@ -67,8 +70,9 @@ def _rows() -> dict[str, str]:
         "who": _or(ROAD_USERS),
         "lone": _or(lone),
         "sided": ", ".join(f"{name} ({PLACES[name].said})" for name in sided),
-        "actions": _or(f"{name}{first_number(row)}" for name, row in MANEUVERS.items()),
-        "sided_actions": ", ".join(name for name, row in MANEUVERS.items() if row.side),
+        "actions": _or(f"{name}{first_number(MANEUVERS[name])}" for name in OF_OTHERS),
+        "own_actions": _or(f"{name} car 1" if name in AROUND else name for name in OF_ITSELF),
+        "sided_actions": ", ".join(name for name in OF_OTHERS if MANEUVERS[name].side),
         "flows": _or(FLOWS),
         "weather": ", ".join(f"scene {name} {row.usual[0]:g} ({unit})" for name, row, unit in airs),
         "lights": _or([*LIGHTS, *SURFACES]),
