@@ -200,6 +200,26 @@ def test_who_drove_is_said_and_what_never_happened() -> None:
     assert "not 9.0" in slow.description
 
 
+def test_who_waits_for_what_never_comes_is_no_failure_of_the_driver() -> None:
+    scene = "ego v=50: stop 3 time=4, creep after car 1 brake; car ahead gap=90 v=60: brake 3 ttc=0.1"
+    found = run_of(f"straight 500 && {scene}")
+    assert found.outcome == "INVALID"
+    assert "the tested car creeps: what it waits for did not come" in found.description
+    slow = run_of("straight 400 && ego v=50: pass car 1 s=60; car ahead gap=40 v=50", "robot")
+    assert slow.outcome == "INVALID"
+    assert "the tested car passes car 1: it had left the road before" in slow.description
+
+
+def test_lanes_are_changed_before_the_junction_that_is_named() -> None:
+    words = "| lanes=2 len=250 // crossroads straight priority // | lanes=2 len=150"
+    run = run_of(f"{words} && ego v=50 lane=1: change_lane left before junction 1")
+    assert run.road is not None
+    assert run.drive is not None
+    (hand,) = hands(run.drive)
+    begins = run.road.passages[0].start
+    assert begins - 15.0 < at(run.drive, "s", hand[2]) + FRONT < begins + 1.0
+
+
 def test_standing_by_order_is_not_being_stuck() -> None:
     drive = drive_of("straight 300 && ego v=50: stop 3 s=60, wait 25")
     assert drive.ended == "goal"

@@ -82,6 +82,8 @@ class ScriptHand:
         self._maneuvers, whats = list[Maneuver](), [each.what for each in world.scene.actions]
         self._places = dict[int, float]()
         """Where the car stands that stops before a place: the station of its front along the line."""
+        self._ends = dict[int, float]()
+        """Where the front of the car is when it has changed lanes before a place."""
         for number, action in enumerate(world.scene.actions):
             self._maneuvers.append(Maneuver(action, drawn(action, rng), whats[:number].count(action.what)))
             self._put(number)
@@ -112,10 +114,14 @@ class ScriptHand:
         )
         self._steering: Reference | None = None
 
+    def _long(self, by: float, lateral: float) -> float:
+        """Returns how many metres along the road it moves sideways: a cubic with this greatest speed."""
+        return max(self._speed.v * 1.5 * abs(by) / lateral, math.pi * math.sqrt(abs(by) * TIGHTEST / 2))
+
     def _move(self, by: float, lateral: float) -> None:
         """Moves the lane by some metres to the left, with a speed sideways of at most so many m/s."""
-        v, s = self._speed.v, self._line.to_road(self._course.s - self._box.ahead)
-        long = max(v * 1.5 * abs(by) / lateral, math.pi * math.sqrt(abs(by) * TIGHTEST / 2))
+        v, long = self._speed.v, self._long(by, lateral)
+        s = self._line.to_road(self._course.s - self._box.ahead)
         self.moves = (*self.moves, LaneMove(s, s + long, by))
         profile = self._world.profile_of(self.road)
         triggers = self._triggers
@@ -133,6 +139,9 @@ class ScriptHand:
         if mark is None or mark.what:
             return
         first, last = stretch_of(mark, self.road, line)
+        if mark.word == "before" and each.what == "change_lane":
+            self._ends[number] = first
+            return
         if each.what not in ("stop", "wait") or mark.word != "before":
             n["station"] = {"after": last, "in": (first + last) / 2, "before": first}[mark.word]
             return
@@ -222,6 +231,9 @@ class ScriptHand:
             before = None if not number else math.inf if self._phases else 0.0
             if each.what in AROUND and each.is_open:
                 wait = self._until_around(each, before)
+            elif number in self._ends:
+                needs = self._long(float(self._line.width_at(self._course.s)), self._sideways(each))
+                wait = 0.0 if self._ends[number] - self._front <= needs else math.inf
             elif number in self._places:
                 left = self._places[number] - self._front
                 if left < 0:
@@ -332,6 +344,9 @@ class ScriptHand:
         while self._phases and self._is_over(self._phases[0], view.time - self._since):
             phase = self._phases.pop(0)
             self._compare(phase, view.time - self._since)
+            if phase.until == "passed" and self._met(self._around)[1] is self._nobody:
+                did = self._did(self._begun - 1)
+                self._skipped.append(f"{NEVER} {did} {self._around}: it had left the road before")
             if self._phases:
                 self._enter(view)
             if not self._phases or self._phases[0].lasts == math.inf:
@@ -405,9 +420,12 @@ class ScriptHand:
     def missed(self) -> tuple[str, ...]:
         """What the car was told to do and has not begun so far, in sentences."""
         found = list(self._skipped)
+        if self._around and self._phases:
+            found.append(f"{NEVER} {self._did(self._begun - 1)} {self._around}: it had not come past")
         if self._begun < len(self._maneuvers):
             each = self._maneuvers[self._begun]
-            has_come = each.is_open or {"time", "station"} & {*each.n} or self._begun in self._places
+            has_come = each.is_open or {"time", "station"} & {*each.n}
+            has_come = has_come or self._begun in (*self._places, *self._ends)
             why = "the drive ended before" if has_come else "what it waits for did not come"
             found.append(f"{NEVER} {self._did(self._begun)}: {why}")
         return tuple(found)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from roadgpt.drive.drive import PEDALS
+from roadgpt.drive.drive import PEDALS, SCRIPT
 from roadgpt.drive.drive_monitor import STUCK_AMONG_OTHERS, STUCK_TIME
 from roadgpt.language.table import VEHICLES
 from roadgpt.road.world import share_in_words
@@ -76,7 +76,8 @@ def judge(
     incidents = incidents_of(case)
     step, failed = first_failure(case, incidents, known if drive.others is None else None)
     behind = _behind(case) if failed and failed.name in ("stuck", "timeout") else ""
-    failed = None if behind else failed
+    by_script = drive.handed_to(step) in (SCRIPT, PEDALS) and bool(drive.missed)
+    failed = None if behind or (by_script and failed and failed.name in ("stuck", "timeout")) else failed
     cause = cast("Cause | None", failed and failed.name)
     hit = next((each for each in incidents if each.contact is not None), None)
     handed_to = drive.handed_to(step) if failed else None
