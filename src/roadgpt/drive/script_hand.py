@@ -424,8 +424,8 @@ class ScriptHand:
             found.append(f"{NEVER} {self._did(self._begun - 1)} {self._around}: it had not come past")
         if self._begun < len(self._maneuvers):
             each = self._maneuvers[self._begun]
-            has_come = each.is_open or {"time", "station"} & {*each.n}
-            has_come = has_come or self._begun in (*self._places, *self._ends)
+            comes = each.is_open or bool({"time", "station"} & {*each.n})
+            has_come = comes or self._begun in (*self._places, *self._ends)
             why = "the drive ended before" if has_come else "what it waits for did not come"
             found.append(f"{NEVER} {self._did(self._begun)}: {why}")
         return tuple(found)
