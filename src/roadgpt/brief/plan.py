@@ -49,6 +49,7 @@ from roadgpt.brief.scene import (
     Person,
     Role,
     Scene,
+    Signal,
     SlipperyPlace,
     usual_weather,
 )
@@ -68,6 +69,7 @@ from roadgpt.language.table import (
     PARTS,
     PLACES,
     ROAD_USERS,
+    SCENES,
     SURFACES,
     WEATHER,
     Part,
@@ -200,6 +202,8 @@ AN_ACTION = language(_of_scene(Action, NUMBERS, side=SIDES), "manoeuvre")
 OF_ITSELF = _of_scene(Scene, NUMBERS, turn=WAYS, person=get_args(Person)) | {"lane": Part("lane")}
 ITSELF = language(OF_ITSELF, TESTED_CAR, lane=_lane_number)
 A_LAND = language(_of_scene(Land, Land.model_fields, lie=get_args(Lie), side=SIDES), "landscape")
+SIGNAL = "lights"
+A_SIGNAL = language(_of_scene(Signal, NUMBERS, shows=tuple(SCENES["signals"]["rows"])), "state of lights")
 SLIPPERY = "slippery"
 A_PATCH = language(_of_scene(SlipperyPlace, SlipperyPlace.model_fields), "slippery place")
 CLOCK = "clock"
@@ -477,6 +481,7 @@ def scene_plan(scene: Scene) -> str:
         actor = _marked(role.kind, role, AN_ACTOR)
         actions = ", ".join(map(action_plan, role.actions))
         line.append(f"{actor}: {actions}" if actions else actor)
+    line += [" ".join([SIGNAL, *written(scene.signal, A_SIGNAL)])] if scene.signal else []
     line += [scene.flow or "", f"oncoming {scene.oncoming}" if scene.oncoming else ""]
     line += [f"parked {side}" for side in scene.parked]
     line += [f"{air.kind} {amount_text(air.amount)}" for air in scene.weather]
@@ -525,6 +530,8 @@ def scene_fields(text: str) -> dict[str, object]:
             head, _, rest = part.partition(":")
             _read_words(fields, head.split()[1:], ITSELF)
             several["actions"] += [read_action(each) for each in rest.split(",") if each.strip()]
+        elif first == SIGNAL:
+            _set(fields, "signal", _made(Signal, _read_words({}, words, A_SIGNAL), part))
         elif first == SLIPPERY:
             several["slippery"].append(_made(SlipperyPlace, _read_words({}, words, A_PATCH), part))
         elif first in LANDFORMS:
@@ -540,7 +547,7 @@ def scene_fields(text: str) -> dict[str, object]:
         elif first in CONDITIONS and not words:
             _set(fields, *CONDITIONS[first])
         else:
-            known = (*ROAD_USERS, TESTED_CAR, "oncoming", "parked", SLIPPERY, *WEATHER, CLOCK)
+            known = (*ROAD_USERS, TESTED_CAR, SIGNAL, "oncoming", "parked", SLIPPERY, *WEATHER, CLOCK)
             known += (*CONDITIONS, *LANDFORMS)
             raise BriefError(
                 f"a scene has no '{part[:40]}'; its parts, divided by ;, begin with one of {', '.join(known)}"

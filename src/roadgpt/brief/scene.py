@@ -11,7 +11,18 @@ from pydantic import AfterValidator, StringConstraints, model_validator
 
 from roadgpt.brief.amount import Amount, Frozen, exactly, span
 from roadgpt.brief.words import MOST_LANES, LandKind
-from roadgpt.language.names import ActorKind, Flow, Landform, Light, Side, Surface, WeatherKind, What, Where
+from roadgpt.language.names import (
+    ActorKind,
+    Flow,
+    Landform,
+    Light,
+    Shown,
+    Side,
+    Surface,
+    WeatherKind,
+    What,
+    Where,
+)
 from roadgpt.language.table import (
     CUES,
     FLOWS,
@@ -205,6 +216,25 @@ class Role(Frozen):
         return f"{said}, {who} {', then '.join(map(str, self.actions))}" if self.actions else said
 
 
+class Signal(Frozen):
+    """What the first traffic lights on the way of the tested car show to it."""
+
+    shows: Shown
+    time: Amount | None = None
+    """From when on; None: for some seconds when the car comes there at its first speed, red and green since
+    before, yellow from then on."""
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        _given(self, "lights")
+        return self
+
+    def __str__(self) -> str:
+        if self.time is None:
+            return f"the traffic lights are {self.shows} when the tested car comes"
+        return " ".join([f"the traffic lights turn {self.shows}", *_said(self)])
+
+
 class SlipperyPlace(Frozen):
     """A stretch of the tested car's road with a friction of its own."""
 
@@ -295,6 +325,7 @@ class Scene(Frozen):
     """The way that the tested car takes at the first junction; None: that of the route."""
     person: Person | None = None
     """Who is at the wheel where a driver hands over, as in the catalogue; None: whom the driver chooses."""
+    signal: Signal | None = None
     actions: tuple[Action, ...] = ()
     """What the tested car is made to do (``roadgpt.drive.script_hand``). Its gaps are those to who is
     ahead in its lane."""
@@ -391,8 +422,8 @@ class Scene(Frozen):
 
     @property
     def has_others(self) -> bool:
-        """Whether somebody or something else is on the road."""
-        return self.has_flow or bool(self.actors or self.parked)
+        """Whether somebody or something else is on the road, or lights run there."""
+        return self.has_flow or bool(self.actors or self.parked or self.signal)
 
     @property
     def lanes_beside(self) -> dict[str, int]:

@@ -47,7 +47,8 @@ def fitted(brief: Brief, scene: Scene, limit: float, map_size: float | None = No
     brief = with_places(brief, scene)
     check_scene(scene, brief)
     needs = (
-        scene.actors, scene.actions, scene.has_flow, scene.speed, scene.lane, scene.slippery, scene.turn
+        scene.actors, scene.actions, scene.has_flow, scene.speed, scene.lane, scene.slippery, scene.turn,
+        scene.signal,
     )  # fmt: skip
     if brief.map is not None or not any(needs):
         return brief

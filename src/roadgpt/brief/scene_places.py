@@ -144,6 +144,14 @@ def with_places(brief: Brief, scene: Scene) -> Brief:
     plain = [n for n, place in enumerate(junctions) if place.kind not in (*LANE_KINDS, *RAMPS)]
     if plain and crossed and not any(place.crosswalk for place in junctions):
         junctions[plain[0]] = junctions[plain[0]].model_copy(update={"crosswalk": True})
+    if scene.signal and plain and not any(place.control == "lights" for place in junctions):
+        first_open = next((n for n in plain if junctions[n].control is None), None)
+        if first_open is None:
+            raise BriefError(
+                f"{scene.signal}, and no junction of the road has lights; write lights there instead of "
+                f"{junctions[plain[0]].control}"
+            )
+        junctions[first_open] = junctions[first_open].model_copy(update={"control": "lights"})
     numbered = [n for n, place in enumerate(junctions) if place.kind not in LANE_KINDS]
     come: dict[int, list[Role]] = {}
     for role in filter(comes_to_junction, scene.actors if plain else ()):
@@ -172,7 +180,7 @@ def _lacking(brief: Brief, scene: Scene) -> Iterator[JunctionClause]:
         yield JunctionClause(kind="t_junction", take="straight", ways=(side, "straight"), control="priority")
         has_junction = True
     is_met = any(map(comes_to_junction, scene.actors))
-    if (is_met or scene.turn or "crosswalk" in wheres) and not has_junction:
+    if (is_met or scene.turn or scene.signal or "crosswalk" in wheres) and not has_junction:
         yield JunctionClause(kind="crossroads", take=scene.turn or (None if is_met else "straight"))
         kinds.append("crossroads")
     if _most(scene, "junction") and not any(kind not in LANE_KINDS for kind in kinds):

@@ -13,7 +13,7 @@ TYPES = {
     "Bump": ("roads", "bumps"), "JunctionKind": ("roads", "junctions"), "Control": ("roads", "controls"),
     "IslandSize": ("roads", "islands"), "Take": ("roads", "takes"), "Side": ("roads", "sides"),
     "Way": ("roads", "ways"), "Surroundings": ("roads", "surroundings"), "CentreLine": ("roads", "centres"),
-    "Compass": ("roads", "compass"),
+    "Compass": ("roads", "compass"), "Shown": ("scenes", "signals"),
 }  # fmt: skip
 """The types of names, and the file and the part whose rows have them."""
 OF_JUNCTIONS = {

@@ -39,7 +39,7 @@ def begin(
     Raises:
         UsageError: the file cannot be used, or an actor of the scene cannot be, or act, on this road."""
     scene, movers, lights = world.scene, list[Mover](), None
-    if scene.has_flow or scene.actors:
+    if scene.has_flow or scene.actors or scene.signal:
         from roadgpt.traffic.lights import lights_of
 
         lights = lights_of(road, world, seed)
@@ -58,4 +58,4 @@ def begin(
         from roadgpt.traffic.idm import IdmMover
 
         movers.append(IdmMover(stage))
-    return Traffic(movers, lights) if movers else None
+    return Traffic(movers, lights) if movers or scene.signal else None

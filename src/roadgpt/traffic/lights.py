@@ -7,7 +7,7 @@ YELLOW_FOR and red for everybody for CLEARING. Source: FHWA, Traffic Signal Timi
 arm of a larger road."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -16,15 +16,25 @@ import numpy as np
 from roadgpt.brief.amount import exactly
 from roadgpt.brief.scene import Role
 from roadgpt.geometry import wrap_angle
+from roadgpt.language.names import Shown
 from roadgpt.network import network_of
 from roadgpt.network.network import Arm, Junction, Network, RoadEnd
+from roadgpt.road.road import START
 from roadgpt.traffic.following import GREEN, RED, YELLOW
+from roadgpt.traffic.maneuver import drawn
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
 GREEN_FOR, YELLOW_FOR, CLEARING = 15.0, 3.0, 2.0  # s
 PHASE = GREEN_FOR + YELLOW_FOR + CLEARING
+BEGINS: Mapping[Shown, float] = {"green": 0.0, "yellow": GREEN_FOR, "red": GREEN_FOR + YELLOW_FOR}
+"""Seconds after its green at which an arm gets a colour."""
+WHEN_IT_COMES: Mapping[Shown, float] = {
+    "green": GREEN_FOR / 2, "yellow": GREEN_FOR + 1.0, "red": GREEN_FOR + YELLOW_FOR + 6.0,
+}  # fmt: skip
+"""The same for when the tested car comes: it sees red in time to stop with 2 m/s^2 at 50 km/h."""
+OF_SIGNAL = (113, 127)  # beside the seed
 OPPOSITE = math.radians(135.0)  # arms whose directions differ by more have green together
 
 
@@ -65,8 +75,13 @@ class Lights:
 
     def show_green(self, junction: Junction, end: RoadEnd, time: float) -> None:
         """Moves the cycle of a junction so that one of its arms is in the middle of its green at a time."""
+        self.show(junction, end, time, GREEN_FOR / 2)
+
+    def show(self, junction: Junction, end: RoadEnd, time: float, since: float) -> None:
+        """Moves the cycle of a junction so that one of its arms has begun its green so many seconds before a
+        time."""
         phase, count, _ = self.phases[end]
-        begin = (phase * PHASE + GREEN_FOR / 2 - time) % (PHASE * count)
+        begin = (phase * PHASE + since - time) % (PHASE * count)
         for arm in junction.arms:
             if arm.end in self.phases:
                 self.phases[arm.end] = (*self.phases[arm.end][:2], begin)
@@ -96,8 +111,9 @@ def _runs(role: Role) -> bool:
 def lights_of(road: "Road", world: "World", seed: int) -> Lights:
     """Returns the lights that run in a drive. If the scene has actors, the tested car has green wherever it
     comes at its first speed, and so has who drives along with it or towards it. If somebody comes from the
-    side and nobody runs a red light, that one has green, and the tested car red."""
-    actors = world.scene.actors
+    side and nobody runs a red light, that one has green, and the tested car red. What the first lights on its
+    way show may be told."""
+    actors, signal = world.scene.actors, world.scene.signal
     lights = Lights(network_of(road, world), seed, actors)
     crosses = any(map(comes_from_side, actors)) and not any(map(_runs, actors))
     speed = world.first_speed or world.limits.speed_limit  # who stands at first goes on up to the limit
@@ -107,4 +123,12 @@ def lights_of(road: "Road", world: "World", seed: int) -> Lights:
             others = [each for each in passage.arms if lights.phases.get(each, own) != own]
             end = others[0] if crosses and others else passage.arrival
             lights.show_green(passage.entered, end, passage.start / speed)
+    lit = next((each for each in road.passages if each.control == "lights"), None)
+    if signal is not None and lit is not None:
+        rng = np.random.default_rng([seed, *OF_SIGNAL])
+        comes = (lit.start - min(START, road.length / 2)) / speed
+        if signal.time is None:
+            lights.show(lit.entered, lit.arrival, comes, WHEN_IT_COMES[signal.shows])
+        else:
+            lights.show(lit.entered, lit.arrival, drawn(signal, rng)["time"], BEGINS[signal.shows])
     return lights

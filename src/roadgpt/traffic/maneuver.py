@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from roadgpt.brief.scene import Action, Role
+from roadgpt.brief.scene import Action, Role, Signal
 from roadgpt.language.names import ActorKind, What
 from roadgpt.language.table import CUES, MANEUVERS, NUMBERS, ROAD_USERS
 
@@ -67,8 +67,8 @@ class Maneuver:
         return max(lasts, math.pi * math.sqrt(abs(by) / 2 / most), 1e-3)
 
 
-def drawn(thing: Role | Action, rng: np.random.Generator) -> dict[str, float]:
-    """Returns a number for each range of a role or an action, in metres, seconds and shares."""
+def drawn(thing: Role | Action | Signal, rng: np.random.Generator) -> dict[str, float]:
+    """Returns a number for each range of a role, an action or a signal, in metres, seconds and shares."""
     found = {}
     for field, number in NUMBERS.items():
         amount = getattr(thing, field, None)

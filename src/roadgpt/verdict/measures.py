@@ -22,7 +22,7 @@ boxes cover the same offsets, wherever the tested car is.
 - distance: between the boxes in plan.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -43,6 +43,7 @@ if TYPE_CHECKING:
 
 EVEN = 0.02  # m/s; speeds that differ by less are equal, but for rounding
 NEAR = 150.0  # m, beyond which others are not measured: 4 s at 130 km/h
+BESIDE = 0.5  # m, on both sides of a car that passes somebody: its way
 ACROSS = np.sin(np.radians(30.0))
 
 
@@ -93,6 +94,8 @@ def measure(road: "Road", drive: "Drive", world: "World") -> Measures:
     step, who = np.nonzero(near)
     sizes = np.array([each.size[:2] for each in drive.others.actors]).reshape(-1, 2)
     lane = driven_line(road, world)
+    if drive.moves:  # whom the car was made to pass is beside its way, though it may be in a lane beside it
+        lane = replace(lane, width=np.minimum(lane.width, drive.car.width + 2 * BESIDE))
     car = lane.boxes(own[:, :5], np.array([drive.car.length, drive.car.width]), own[:, 5])
     found, mine = states[near], car[step]
     others = lane.boxes(found, sizes[who])
