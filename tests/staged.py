@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from roadgpt.drive import COLUMNS, Box, Columns, Drive
 from roadgpt.drive.lane_position import LanePolygon
+from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.geometry.boxes import corners
 from roadgpt.road import Road, World
 from roadgpt.traffic import STEP, Actor, Tracks
@@ -17,6 +18,12 @@ from roadgpt.traffic.actor import SIZES, rounded
 BOX = Box(4.7, 1.86, ahead=-0.1)
 Motion = Callable[[Any], tuple[Any, Any, Any]]
 """Of times to x, y and heading of the middle of a box."""
+
+
+def level(start: float, end: float) -> Road:
+    """A straight road along x, by pieces, which are quicker than a spline."""
+    length = end - start
+    return Road(PieceCurve(start, 0.0, 0.0, (Piece(length),)), GradeProfile(0.0, (0.0, length), (0.0, 0.0)))
 
 
 def driven(motion: Motion, duration: float, road: Road | None = None, ended: str = "goal") -> Drive:

@@ -10,14 +10,14 @@ import shapely
 from numpy.typing import NDArray
 
 from roadgpt.drive import Drive
-from roadgpt.road import Road, World
+from roadgpt.road import World
 from roadgpt.traffic import STEP, Tracks
 from roadgpt.traffic.actor import SIZES
 from roadgpt.verdict.contact import contacts_of
 from roadgpt.verdict.measures import measure
-from staged import BOX, among, box_at, driven, straight, tracks
+from staged import BOX, among, box_at, driven, level, straight, tracks
 
-ROAD = Road.through([[x, 0] for x in range(-100, 401, 20)])
+ROAD = level(-100, 400)
 FINE = 0.002  # s
 
 

@@ -37,9 +37,8 @@ def test_the_map_grows_until_any_seed_finds_room(line: str) -> None:
     world = world_for(brief, World())
     assert world == World().changed(map_size=world.site.map_size)
     assert 250 < world.site.map_size <= 1000
-    for seed in range(20, 22):
-        points = build(draft(brief, world, seed=seed)).sample().points
-        assert np.all((points[:, :2] > 0) & (points[:, :2] < world.site.map_size))
+    points = build(draft(brief, world, seed=len(line))).sample().points
+    assert np.all((points[:, :2] > 0) & (points[:, :2] < world.site.map_size))
     assert f"the map is {world.site.map_size:g} m wide" in map_remark(Brief(), World(), world)
 
 

@@ -54,7 +54,7 @@ def twisted() -> Road:
 def test_the_table_is_the_surface_of_the_road() -> None:
     road = twisted()
     sampled, rng = sample_road(road), np.random.default_rng(4)
-    for s, t in zip(rng.uniform(1, 119, 300), rng.uniform(-7, 7, 300), strict=True):
+    for s, t in zip(rng.uniform(1, 119, 100), rng.uniform(-7, 7, 100), strict=True):
         x, y, z = road.at(s, t)
         found = locate_on(sampled.table, sampled.first, sampled.step, x, y, s + rng.uniform(-2, 2))
         assert found[:3] == pytest.approx((s, t, z), abs=3e-4)
@@ -104,7 +104,7 @@ class Steady(dict):
 
 CASES = [
     (radius, ratio, share, hand)
-    for radius, hand in ((25, 1), (60, -1), (120, 1), (250, -1))
+    for radius, hand in ((25, 1), (250, -1))
     for ratio, share in ((-0.08, 0.55), (0.08, 0.15), (0.08, 0.55))
 ]
 

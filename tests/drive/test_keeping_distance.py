@@ -47,7 +47,7 @@ def is_between(gap: float, left: float, v: float, walks: float) -> bool:
     return bool(times[0] <= others[-1] + 0.5 and others[0] <= times[-1] + 0.5)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(st.floats(3, 45), st.floats(0.2, 4), st.floats(4, 20), st.floats(1, 2.5), st.booleans())
 def test_one_who_walks_into_the_path_counts_only_if_both_come_there_at_a_time(
     gap: float, left: float, v: float, walks: float, is_right: bool

@@ -71,7 +71,7 @@ def slow_polygons(network: Network) -> dict[Leg, shapely.Polygon]:
 
 def test_a_point_lies_in_the_lanes_that_dense_samples_show(lanes: Lanes) -> None:
     network, rng = lanes.network, np.random.default_rng(0)
-    members = [network.roads[n] for n in rng.integers(len(network.roads), size=100)]
+    members = [network.roads[n] for n in rng.integers(len(network.roads), size=50)]
     aside = rng.uniform(-1, 1, len(members))
     along = rng.uniform(0, 1, len(members))
     points = np.array(
@@ -104,7 +104,7 @@ def test_a_point_lies_in_the_lanes_that_dense_samples_show(lanes: Lanes) -> None
                     middle = (low[nearest] + high[nearest]) / 2
                     side = 1 if by_lane[key].lane.is_along else -1
                     assert by_lane[key].t == pytest.approx(side * (t - middle), abs=0.03)
-    assert counted > 20
+    assert counted > 10
 
 
 def test_neighbours_lie_beside_a_lane_and_drive_the_same_way(lanes: Lanes) -> None:

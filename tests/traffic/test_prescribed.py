@@ -22,6 +22,8 @@ from staged import BOX
 TestedCar.__test__ = False
 BY_POINT = {name: [*rows] for name, rows in groupby(PRESCRIBED, lambda row: row.scenario)}
 WORLD = World().changed(lane_width=LANE_WIDTH, map_size=1200)
+FARTHEST = [name for name in BY_POINT if not any(each.startswith(f"{name} ") for each in BY_POINT)]
+"""Not at nominal values where ends of a grid are prescribed: ``test_scenarios.py`` compares those values."""
 OF_ROBOT = ("ncap:CBLA", "r157:cut_in", "leaderboard:crossing_after_turn")
 
 
@@ -30,7 +32,7 @@ def test_something_is_prescribed_of_each() -> None:
     assert all(row.tolerance > 0 for row in PRESCRIBED)
 
 
-@pytest.mark.parametrize("name", BY_POINT)
+@pytest.mark.parametrize("name", FARTHEST)
 def test_what_happens_is_what_is_prescribed(name: str) -> None:
     assert not _wrong(name, Measured(_rehearsal(name)))
 

@@ -22,12 +22,12 @@ from roadgpt.verdict import Cause, Incident, Verdict, judge
 from roadgpt.verdict.contact import contacts_of
 from roadgpt.verdict.criteria import limits_at
 from roadgpt_search.faults.failures import manner_of, reason_of
-from staged import among, driven, straight, tracks
+from staged import among, driven, level, straight, tracks
 from verdict.test_incidents import WORLD as ROUTE_WORLD
 from verdict.test_incidents import crossroads
 from verdict.test_incidents import driven as on_route
 
-ROAD = Road.through([[x, 0] for x in range(0, 301, 20)])
+ROAD = level(0, 300)
 WORLD = World(limits=Limits(speed_limit=30.0))
 HALF = 4.7 / 2
 

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from roadgpt.drive import Drive
-from roadgpt.road import Limits, Road, World
+from roadgpt.road import Limits, World
 from roadgpt.traffic import STEP, TestedCar, begin
 from roadgpt.verdict import judge
-from staged import BOX, among, driven
+from staged import BOX, among, driven, level
 
 TestedCar.__test__ = False
-ROAD = Road.through([[x, 0] for x in range(0, 601, 20)])
+ROAD = level(0, 600)
 FASTEST = Limits(speed_limit=130 / 3.6)
 LEADER = "ego v=50; car ahead gap=60 v=30: brake 2 gap=20"
 

@@ -17,13 +17,13 @@ from roadgpt.verdict import Verdict, judge
 from roadgpt.verdict.criteria import Judged, incidents_of
 from roadgpt.verdict.law import fault_of, law_of
 from roadgpt.verdict.verdict import Contact
-from staged import Motion, among, driven, straight, tracks
+from staged import Motion, among, driven, level, straight, tracks
 from verdict.test_incidents import WORLD as ROUTE_WORLD
 from verdict.test_incidents import crossroads
 from verdict.test_incidents import driven as along
 from verdict.test_right_of_way import LEFT, RIGHT, V, moving, node, passing
 
-ROAD = Road.through([[x, 0] for x in range(0, 401, 20)])
+ROAD = level(0, 400)
 LANE = -2.0  # m, from the middle of a road of two lanes of 4 m to that of the tested car's
 GREEN, RED, ALL_RED = 5.0, 22.0, 20.0
 """Seconds that the tested car waits at its start, to come to its line while the lights show it green and the

@@ -9,9 +9,9 @@ import pytest
 from roadgpt.drive import Columns, Drive
 from roadgpt.road import Design, Road, Segment, World, build
 from roadgpt.verdict.measures import Measures, measure
-from staged import BOX, among, driven, straight, tracks
+from staged import BOX, among, driven, level, straight, tracks
 
-ROAD = Road.through([[x, 0] for x in range(0, 501, 20)])
+ROAD = level(0, 500)
 HALF = 4.7 / 2
 
 
