@@ -291,6 +291,22 @@ def test_it_goes_around_somebody_and_back(scene: str, clear: float, driver: str)
     assert at(drive, "t", drive.duration - 2.0) == pytest.approx(at(drive, "t", 0.0), abs=0.2)
 
 
+def test_who_is_made_to_drive_on_the_wrong_side_is_to_blame_there() -> None:
+    scene = "ego v=50: pass truck 1 left; truck ahead v=20 gap=50; car oncoming"
+    wrong = run_of(f"straight 400 && {scene}", "robot").verdict
+    assert wrong is not None
+    assert wrong.first_contact is not None
+    assert wrong.first_contact.face == "front"
+    assert wrong.at_fault == "ego"
+    assert wrong.law is not None
+    assert not wrong.law.other
+    changed = "ego v=60 lane=1: change_lane left time=3; car lane left gap=120 v=30"
+    right = run_of(f"straight 600 | lanes=2 && {changed}", "robot").verdict
+    assert right is not None
+    assert right.law is not None
+    assert [*right.law.ego] == ["distance"]
+
+
 def test_where_there_is_no_room_the_test_is_refused() -> None:
     passes = run_of("straight 400 | lanes=1 against=0 && ego v=50: pass car 1; car ahead gap=120 v=0")
     assert passes.outcome == "INVALID"

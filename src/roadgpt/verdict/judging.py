@@ -84,7 +84,7 @@ def judge(
     if handed_to == PEDALS and (cause in DEPARTURES or cause in STEERED):
         handed_to = None
     asks = cause == "collision" or bool(handed_to and cause in GIVES_WAY)  # those may be up to the brakes
-    found, law, fault = _blame(case, incidents, hit, asks)
+    found, law, fault = _blame(case, laid, incidents, hit, asks)
     avoidable = found.is_avoidable or found.is_own_doing if found and cause == "collision" else None
     outcome: Outcome = "PASS" if failed is None else "UNAVOIDABLE" if avoidable is False else "FAIL"
     excuse = ""
@@ -146,9 +146,11 @@ def judge(
 
 
 def _blame(
-    case: Judged, incidents: Sequence[Incident], hit: Incident | None, is_avoidance_asked: bool
+    case: Judged, laid: "Road", incidents: Sequence[Incident], hit: Incident | None, is_avoidance_asked: bool
 ) -> "tuple[Avoidance | None, Law | None, Fault | None]":
-    """Returns whether the first contact could have been avoided, what the law says, and whose fault it is."""
+    """Returns whether the first contact could have been avoided, what the law says, and whose fault it is.
+
+    For the law, a car that was made to change lanes is in its lane there, but not in an oncoming lane."""
     found, (road, drive, world) = None, (case.road, case.drive, case.world)
     if hit is None or hit.contact is None:
         return None, None, None
@@ -158,7 +160,9 @@ def _blame(
         found = avoidance_of(road, drive, world, hit)
     from roadgpt.verdict.law import fault_of, law_of
 
-    law = law_of(road, drive, world, incidents)
+    profile = world.profile_of(road)
+    is_own_side = (profile.middle(hit.at_s) - profile.centre(hit.at_s)) * profile.side > 0
+    law = law_of(road if is_own_side else laid, drive, world, incidents)
     return found, law, fault_of(law, hit.contact, bool(found and found.is_own_doing))
 
 
