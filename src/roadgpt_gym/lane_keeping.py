@@ -115,11 +115,8 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         brief = self._briefs[int(self.np_random.integers(len(self._briefs)))]
         if options and "prompt" in options:
             brief = brief_of(str(options["prompt"]), self._given, self._setup)
-        if brief.scene.actions:
-            raise UsageError(
-                "the environment cannot make its car do what a scene tells "
-                f"({brief.scene.actions[0]}); leave that out"
-            )
+        if brief.scene.has_script:
+            raise UsageError("the environment cannot make its car do what a scene tells; leave that out")
         self._words, self._world = brief.words, world_for(brief, self._given)
         self.road = road = self._drawn(brief)
         self._vehicle = Vehicle.on(road, self._world, ETK_LIKE)

@@ -315,6 +315,40 @@ def test_where_there_is_no_room_the_test_is_refused() -> None:
     assert "no oncoming lane" in beside.description
 
 
+def test_it_pulls_over_and_out_again() -> None:
+    run = run_of("straight 500 && ego v=50: pull_over 6 time=4, pull_out")
+    drive = run.drive
+    assert drive is not None
+    assert run.road is not None
+    rim = float(run.world.profile_of(run.road).rims(0.0).right)
+    stands = drive["speed"] < 0.1
+    assert np.ptp(drive["time"][stands]) == pytest.approx(6.0, abs=1.0)
+    assert drive["t"][stands].max() - 0.9 - rim == pytest.approx(0.2, abs=0.15)
+    assert at(drive, "t", drive.duration) == pytest.approx(at(drive, "t", 0.0), abs=0.2)
+    assert run.outcome == "PASS"
+
+
+def test_it_starts_and_keeps_aside_until_it_pulls_out() -> None:
+    keeps = run_of("straight 300 && ego v=50 t=-0.5", "lane_centring")
+    pulls = run_of("straight 300 && ego v=0 t=-1: pull_out time=5", "lane_centring")
+    assert keeps.outcome == pulls.outcome == "PASS"
+    assert keeps.road is not None
+    assert keeps.drive is not None
+    assert pulls.drive is not None
+    middle = float(keeps.world.profile_of(keeps.road).middle(0.0))
+    assert keeps.drive["t"] - middle == pytest.approx(-0.5, abs=0.1)
+    assert at(pulls.drive, "t", 4.9) - middle == pytest.approx(-1.0, abs=0.05)
+    assert at(pulls.drive, "t", pulls.drive.duration) - middle == pytest.approx(0.0, abs=0.1)
+
+
+def test_it_overtakes_as_fast_as_it_is_told() -> None:
+    drive = drive_of("straight 700 && ego v=50: overtake to=45; truck ahead gap=30 v=25", "robot")
+    (hand,) = hands(drive)
+    assert drive["speed"][(drive["time"] > hand[1] + 3.0) & (drive["time"] < hand[2])] == pytest.approx(
+        12.5, abs=0.4
+    )
+
+
 def test_roads_get_the_lanes_that_changes_need() -> None:
     run = run_of("straight 400 && ego v=50: change_lane left time=3")
     assert run.outcome == "PASS"
@@ -341,6 +375,8 @@ REFUSED = {
     "ego: cut_in": "cannot be told to 'cut_in'; it can keep, brake",
     "ego: brake 3 after car 1 brake": "needs another car that does 'brake'",
     "ego v=0: brake s=60": "stands until it brakes at 60 metres from the start, and so never comes there",
+    "ego: pull_out": "pulls out, and is in its lane",
+    "ego: pull_over": "pulls over without end",
     "ego: wait": "waits without end",
     "ego: wait, creep": "waits without end",
     "car ahead: release": "a car has no 'release'",

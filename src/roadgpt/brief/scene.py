@@ -321,6 +321,9 @@ class Scene(Frozen):
     lane: int | None = None
     """The lane in which the tested car starts, of those of its direction: 1 is the one at the kerb, -1 the
     innermost one."""
+    offset: Amount | None = None
+    """Where the tested car starts, in metres to the left of the middle of that lane, and keeps to until it
+    pulls out."""
     turn: Literal["left", "right", "straight"] | None = None
     """The way that the tested car takes at the first junction; None: that of the route."""
     person: Person | None = None
@@ -383,10 +386,14 @@ class Scene(Frozen):
                 raise ValueError(f"there is no '{action.whom}' to {action.what}; name one of the scene")
             follows = self.actions[self.actions.index(action) + 1 :][:1]
             is_open = not follows or not {*CUES} & follows[0].model_fields_set
-            if action.what == "wait" and action.duration is None and is_open:
+            if action.what in ("wait", "pull_over") and action.duration is None and is_open:
                 raise ValueError(
-                    "the tested car waits without end; write wait 5, or when what comes next begins"
+                    f"the tested car {MANEUVERS[action.what].said} without end; write {action.what} 5, or "
+                    "when what comes next begins"
                 )
+            before = [each.what for each in self.actions[: self.actions.index(action)]]
+            if action.what == "pull_out" and self.offset is None and "pull_over" not in before:
+                raise ValueError("the tested car pulls out, and is in its lane; write for example ego t=-2")
         for who, actions in ((None, self.actions), *((role, role.actions) for role in self.actors)):
             for event in (action.at for action in actions if action.at and action.at.what):
                 if event.of == "ego":
@@ -419,6 +426,11 @@ class Scene(Frozen):
     def has_flow(self) -> bool:
         """Whether vehicles drive in the lanes of the map."""
         return self.flow is not None or self.oncoming not in (None, "none")
+
+    @property
+    def has_script(self) -> bool:
+        """Whether it tells the tested car what to do, or where to keep to."""
+        return bool(self.actions) or self.offset is not None
 
     @property
     def has_others(self) -> bool:
@@ -564,6 +576,8 @@ def land_remark(scene: Scene) -> str:
 def parts_said(scene: Scene) -> Iterator[str]:
     """Yields the parts of a scene in words, such as 'a truck ahead'."""
     starts = [f"at {scene.speed} km/h"] if scene.speed else []
+    if scene.offset:
+        starts.append(NUMBERS["offset"].said.format(scene.offset))
     if scene.lane:
         inner = "the innermost lane" if scene.lane == -1 else f"lane {-scene.lane} from the inside"
         starts.append(f"in {f'lane {scene.lane} from the kerb' if scene.lane > 0 else inner}")

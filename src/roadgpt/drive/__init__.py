@@ -173,10 +173,11 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None, r
     or are replayed. ``road`` is None if it is not known yet."""
     from roadgpt.road import World
 
-    if world.scene.actions and not getattr(simulator, "heeds_scripts", False):
+    if world.scene.has_script and not getattr(simulator, "heeds_scripts", False):
+        does = world.scene.actions[0] if world.scene.actions else f"starts {world.scene.offset} m aside"
         raise UsageError(
-            f"this simulator cannot make the tested car do what its scene tells ({world.scene.actions[0]}); "
-            "drive in the simulator mujoco"
+            f"this simulator cannot make the tested car do what its scene tells ({does}); drive in the "
+            "simulator mujoco"
         )
     asked = world.scene.on_the_road
     if (replays or asked != Scene()) and not getattr(simulator, "moves_others", False):

@@ -37,7 +37,7 @@ from roadgpt.road.road import START
 from roadgpt.traffic.course import Course, Met
 from roadgpt.traffic.lateral import Lateral, Offsets
 from roadgpt.traffic.longitudinal import Longitudinal
-from roadgpt.traffic.maneuver import LATERAL, STOP, Maneuver, Phase, drawn
+from roadgpt.traffic.maneuver import CHANGE, LATERAL, STOP, Maneuver, Phase, drawn
 from roadgpt.traffic.places import SIGN, offset_of, stretch_of
 from roadgpt.traffic.traffic import NEVER, Stage
 from roadgpt.traffic.triggers import Triggers
@@ -67,6 +67,7 @@ EARLY, FOLLOWING = (
     1.0,
     2.0,
 )  # s: before it would have to begin; of headway, with which it follows whom it overtakes
+EDGE = 0.2  # m, from the edge of the shoulder, or the road, where it pulls over
 PASSED = {"overtake": 10.0, "pass": 2.0}  # m, behind its rear, where it goes back
 
 
@@ -89,6 +90,10 @@ class ScriptHand:
             self._put(number)
         self._nobody = Met(FAR, 0.0, box.length, box.width)
         self._lateral, self.moves = Lateral(), tuple[LaneMove, ...]()
+        if world.scene.offset is not None:
+            by = drawn(world.scene, rng)["offset"]
+            self.moves = (LaneMove(-2.0, -1.0, by),)
+            road = road.with_profile(world.profile_of(road).moved(*self.moves[0]))
         self._follow(road)
         self._begun, self._phases = 0, list[Phase]()
         self._since = self._planned = self._v = 0.0
@@ -162,11 +167,16 @@ class ScriptHand:
         if not self._phases and not (self._stands and not self._begun):
             return command, None
         steer, throttle, brake = command
-        if self._hands == "wheel":
-            return (self._steered(view), throttle, brake), SCRIPT
-        own_throttle, own_brake = self._pedals(view)
-        throttle = own_throttle if brake <= own_brake else 0.0
-        return (steer, throttle, max(brake, own_brake)), PEDALS
+        steers = self._hands == "wheel"
+        if not steers or (self._phases and self._phases[0].goal is not None) or self._holds:
+            own_throttle, own_brake = self._pedals(view)
+            throttle, brake = own_throttle if brake <= own_brake else 0.0, max(brake, own_brake)
+        return (self._steered(view) if steers else steer, throttle, brake), SCRIPT if steers else PEDALS
+
+    @property
+    def _holds(self) -> bool:
+        """Whether it stands, or goes on as fast as it is, for some time."""
+        return bool(self._phases) and self._phases[0].until is None
 
     def _see(self, view: View) -> None:
         before, self._speed.v = self._speed.v, max(view.vx, 0.0)
@@ -254,12 +264,13 @@ class ScriptHand:
                 self._tell("after", self._maneuvers[number - 1], view)
             self._tell("with", each, view)
             self._lateral.t, self._lateral.slide = self._aside(view), None
-            if each.what in (*AROUND, "change_lane"):
+            if each.what in (*AROUND, "change_lane", "pull_out", "pull_over"):
                 self._go_aside(each, view)
             else:
                 self._phases = [] if each.what == "release" else self._triggers.phases(each)
             rest = self._maneuvers[self._begun :]
-            if each.what == "stop" and "duration" not in each.n and rest and not rest[0].is_open:
+            is_waiting = bool(rest) and not rest[0].is_open and "duration" not in each.n
+            if each.what in ("stop", "pull_over") and is_waiting:
                 self._phases.append(Phase(lasts=math.inf))
             if self._phases:
                 self._enter(view)
@@ -299,7 +310,22 @@ class ScriptHand:
 
     def _go_aside(self, maneuver: Maneuver, view: View) -> None:
         """Begins to change lanes, or to go around somebody; raises SceneError if there is no lane."""
-        lateral = self._sideways(maneuver)
+        lateral, n = self._sideways(maneuver), maneuver.n
+        if maneuver.what in ("pull_out", "pull_over"):
+            profile, s = self._world.profile_of(self.road), self._line.to_road(self._course.s)
+            by = -sum(each.by for each in self.moves)
+            if maneuver.what == "pull_over":
+                rims, kerb = profile.rims(s), "left" if profile.left_hand else "right"
+                side = SIGN[maneuver.action.side or kerb]
+                edge = float(rims.left if side > 0 else rims.right)
+                by = edge - side * (self._box.width / 2 + EDGE) - float(profile.middle(s))
+            self._move(by, lateral)
+            goal = n.get("to") if maneuver.what == "pull_out" else None
+            self._phases = [Phase(goal, n.get("accel", CHANGE), until="there")]
+            if maneuver.what == "pull_over":
+                self._phases.append(Phase(0.0, STOP, until="speed"))
+                self._phases += [Phase(lasts=n["duration"])] if "duration" in n else []
+            return
         if maneuver.what == "change_lane":
             at = self._line.to_road(self._course.s), self.road, self._world, self._box.width
             self._move(offset_of("lane", maneuver.action.side, *at), lateral)

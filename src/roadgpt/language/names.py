@@ -10,7 +10,7 @@ Where = Literal["ahead", "behind", "lane", "far", "oncoming", "crossing", "parke
     "crosswalk", "beside", "roundabout"]
 What = Literal["keep", "brake", "stop", "speed", "follow", "open_gap", "swerve", "drift", "cut_in",
     "cut_out", "change_lane", "overtake", "merge", "pull_out", "turn_off", "turn_in", "turn_across", "cross",
-    "run_light", "run_sign", "reverse", "wrong_way", "wait", "creep", "pass", "release"]
+    "run_light", "run_sign", "reverse", "wrong_way", "wait", "creep", "pass", "pull_over", "release"]
 Flow = Literal["light", "medium", "dense"]
 WeatherKind = Literal["fog", "rain", "hail", "dust"]
 Light = Literal["night", "low_sun"]

@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from roadgpt.brief.scene import Action, Role, Signal
+from roadgpt.brief.scene import Action, Role, Scene, Signal
 from roadgpt.language.names import ActorKind, What
 from roadgpt.language.table import CUES, MANEUVERS, NUMBERS, ROAD_USERS
 
@@ -18,7 +18,7 @@ CHANGE = 2.0  # m/s^2
 TURNING = 20.0 / 3.6  # m/s, of vehicles that turn at a junction, at most
 LATERAL: Mapping[What, float] = {
     "swerve": 0.5, "drift": 0.5, "cut_in": 1.5, "cut_out": 1.5, "change_lane": 1.0, "overtake": 1.5,
-    "pull_out": 1.0, "wrong_way": 1.0, "pass": 1.0,
+    "pull_out": 1.0, "wrong_way": 1.0, "pass": 1.0, "pull_over": 1.0,
 }  # fmt: skip
 """The greatest speed sideways in m/s."""
 PATH, RUNS, RUNNING_PATH = 1.0, 6.0 / 3.6, 1.5
@@ -67,8 +67,9 @@ class Maneuver:
         return max(lasts, math.pi * math.sqrt(abs(by) / 2 / most), 1e-3)
 
 
-def drawn(thing: Role | Action | Signal, rng: np.random.Generator) -> dict[str, float]:
-    """Returns a number for each range of a role, an action or a signal, in metres, seconds and shares."""
+def drawn(thing: Role | Action | Signal | Scene, rng: np.random.Generator) -> dict[str, float]:
+    """Returns a number for each range of a role, an action, a signal or a scene, in metres, seconds and
+    shares."""
     found = {}
     for field, number in NUMBERS.items():
         amount = getattr(thing, field, None)

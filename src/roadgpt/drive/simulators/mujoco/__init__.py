@@ -77,10 +77,11 @@ class MujocoSimulator:
         """Implements `roadgpt.drive.Simulator.simulate`; the seed is only passed to the driver, because the
         physics uses no random numbers."""
         script = None
-        if world.scene.actions:
+        if world.scene.has_script:
             from roadgpt.drive.script_hand import ScriptHand  # only drives with one load it
 
             script = ScriptHand(road, world, self.car.box, seed, traffic)
+            road = script.road
         guard, camera = DriverGuard(driver, script=script), camera_of(driver)
         vehicle = Vehicle.on(road, world, self.car)
         sensor = None if camera is None else CameraSensor(camera, road, world)
