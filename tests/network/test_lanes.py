@@ -7,6 +7,7 @@ import networkx
 import numpy as np
 import pytest
 import shapely
+from scipy.spatial import cKDTree
 
 from network.random_designs import random_design, random_lanes_design
 from network.random_maps import map_route
@@ -85,8 +86,8 @@ def test_a_point_lies_in_the_lanes_that_dense_samples_show(lanes: Lanes) -> None
         s = np.linspace(0, member.road.length, int(member.road.length / FINE) + 2)
         line, heading = member.road.at(s)[:, :2], member.road.heading(s)
         edges = bands(member, s)
-        for point, places in zip(points, found, strict=True):
-            nearest = int(np.argmin(np.sum((line - point) ** 2, axis=1)))
+        nearby = cKDTree(line).query(points)[1].tolist()
+        for point, places, nearest in zip(points, found, nearby, strict=True):
             away = point - line[nearest]
             along = away @ (np.cos(heading[nearest]), np.sin(heading[nearest]))
             t = away @ (-np.sin(heading[nearest]), np.cos(heading[nearest]))

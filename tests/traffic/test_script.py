@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+import shapely
 from shapely import LineString, Point, Polygon
 
 from boxed import corners
@@ -54,17 +55,17 @@ class Shown(NamedTuple):
     def along(self, who: int) -> np.ndarray:
         """How far each sample of an actor is along the tested car's lane."""
         places = self.states[:, who, :2]
-        return np.array(
-            [self.path.project(Point(*each)) if each[0] == each[0] else np.nan for each in places]
-        )
+        s = shapely.line_locate_point(self.path, shapely.points(np.nan_to_num(places)))
+        return np.where(np.isnan(places[:, 0]), np.nan, s)
 
     def left(self, who: int) -> np.ndarray:
         """How far each sample of an actor is to the left of the tested car's lane's middle."""
-        out = []
-        for s, (x, y) in zip(self.along(who), self.states[:, who, :2], strict=True):
-            a, b = (self.path.interpolate(s + d) for d in (-0.05, 0.05)) if s == s else (Point(0, 0),) * 2
-            out.append(((b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)) / max(a.distance(b), 1e-9))
-        return np.where(np.isnan(self.states[:, who, 0]), np.nan, out)
+        s = np.nan_to_num(self.along(who))
+        a, b = (
+            shapely.get_coordinates(shapely.line_interpolate_point(self.path, s + d)) for d in (-0.05, 0.05)
+        )
+        (dx, dy), (x, y) = (b - a).T, (self.states[:, who, :2] - a).T
+        return np.asarray((dx * y - dy * x) / np.maximum(np.hypot(dx, dy), 1e-9))
 
     def gap(self, who: int) -> np.ndarray:
         apart = np.abs(self.along(who) - self.car[:, 4])
@@ -79,7 +80,7 @@ def show(
     world = world.changed(scene=scene)
     traffic = begin(road, world, seed)
     assert traffic is not None
-    s = np.linspace(0.0, road.length, int(road.length * 20))
+    s = np.linspace(0.0, road.length, int(road.length * 4))
     xyz = road.at(s, world.profile_of(road).middle(s))
     metres = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(xyz[:, :2], axis=0).T))])
     own, rows = 2.5, []
