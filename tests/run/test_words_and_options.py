@@ -79,3 +79,12 @@ def test_what_the_words_say_stands_unless_an_option_says_otherwise(words: str, s
         of_scene_lost = lost if "|" not in words else set()
         assert any("is set and used" in each for each in said) == bool(of_scene_lost), said
         assert world_for(brief, Setup(scenario=scenario).staged(world, False)) == world
+
+
+@pytest.mark.parametrize("scene", ["lights red", "car junction left: cross", "ego v=40 left"])
+def test_lanes_of_the_words_stand_where_the_scene_makes_the_road_a_route(scene: str) -> None:
+    brief = read_plan(f"straight 200 | lanes=2 && {scene}")
+    found = world_for(brief, World())
+    said = " ".join(world_remarks(brief, World(), found))
+    assert "is set and used" not in said
+    assert "straight len=200 | lanes=2 //" in said

@@ -8,6 +8,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import plan, scene_plan
 from roadgpt.brief.scene import Scene, land_remark, scene_text
 from roadgpt.brief.scene_fit import fitted
+from roadgpt.brief.scene_places import with_places
 from roadgpt.design.road_search import sufficient_map
 from roadgpt.road import World
 from roadgpt.road.world import KMH, Limits
@@ -59,8 +60,8 @@ def world_remarks(brief: Brief, usual: World, found: World) -> tuple[str, ...]:
 
 def lane_remarks(brief: Brief, usual: World, found: World) -> Iterator[str]:
     """Yields a sentence if the description asks for lanes, and another if it asks for a centre line that the
-    road does not get; nothing for networks."""
-    if brief.is_of_network:
+    road does not get; nothing for networks, also where the scene needs a junction."""
+    if with_places(brief, found.scene).is_of_network:
         return
     lanes, centre, own = brief.lanes_text, brief.centre, found.section.lanes
     if lanes is not None and own != lanes:
