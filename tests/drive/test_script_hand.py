@@ -349,6 +349,23 @@ def test_it_overtakes_as_fast_as_it_is_told() -> None:
     )
 
 
+def test_who_meets_somebody_on_the_way_out_goes_back_behind_whom_it_overtakes() -> None:
+    scene = "ego v=60: overtake; truck ahead v=30 gap=60; car oncoming gap=280 v=60"
+    run = run_of(f"straight 700 && {scene}")
+    assert run.drive is not None
+    assert "gave up while the tested car overtakes truck 1" in run.description
+    assert run.outcome in ("INVALID", "NOT TESTED")
+    assert nearest(run.drive) > 0.5
+    assert at(run.drive, "t", run.drive.duration) == pytest.approx(at(run.drive, "t", 0.0), abs=0.2)
+
+
+@pytest.mark.parametrize("seconds", [3, 6])
+def test_lanes_are_changed_in_the_time_that_is_told(seconds: int) -> None:
+    drive = drive_of(f"straight 500 | lanes=2 && ego v=50 lane=1: change_lane left for={seconds} time=4")
+    (hand,) = hands(drive)
+    assert hand[2] - hand[1] == pytest.approx(seconds, abs=0.2)
+
+
 def test_roads_get_the_lanes_that_changes_need() -> None:
     run = run_of("straight 400 && ego v=50: change_lane left time=3")
     assert run.outcome == "PASS"

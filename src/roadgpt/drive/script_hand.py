@@ -37,7 +37,7 @@ from roadgpt.road.road import START
 from roadgpt.traffic.course import Course, Met
 from roadgpt.traffic.lateral import Lateral, Offsets
 from roadgpt.traffic.longitudinal import Longitudinal
-from roadgpt.traffic.maneuver import CHANGE, LATERAL, STOP, Maneuver, Phase, drawn
+from roadgpt.traffic.maneuver import CHANGE, FAST, LATERAL, STOP, Maneuver, Phase, drawn
 from roadgpt.traffic.places import SIGN, offset_of, stretch_of
 from roadgpt.traffic.traffic import NEVER, Stage
 from roadgpt.traffic.triggers import Triggers
@@ -59,14 +59,10 @@ NEAREST = 0.3  # m before the place where it stops
 BACK = 0.5  # m/s, with which it is steered back at most
 FAR = 1e6  # m, to nobody
 TIGHTEST = 8.0  # m, the radius of a slow movement sideways: near full lock
-CLEAR, CLEAR_OF_PEOPLE = (
-    1.0,
-    1.5,
-)  # m, beside whom it passes; of people: Germany, StVO, section 5, in towns
-EARLY, FOLLOWING = (
-    1.0,
-    2.0,
-)  # s: before it would have to begin; of headway, with which it follows whom it overtakes
+CLEAR = 1.0  # m, beside whom it passes
+CLEAR_OF_PEOPLE = 1.5  # m, also of who rides a bicycle: Germany, StVO, section 5, in towns
+EARLY = 1.0  # s, before it would have to begin to go around somebody
+FOLLOWING = 2.0  # s of headway, with which it still follows whom it overtakes
 EDGE = 0.2  # m, from the edge of the shoulder, or the road, where it pulls over
 PASSED = {"overtake": 10.0, "pass": 2.0}  # m, behind its rear, where it goes back
 
@@ -90,9 +86,11 @@ class ScriptHand:
             self._put(number)
         self._nobody = Met(FAR, 0.0, box.length, box.width)
         self._lateral, self.moves = Lateral(), tuple[LaneMove, ...]()
+        self._parked = 0.0
+        """How far it was moved to the left of its lane, from which it pulls out."""
         if world.scene.offset is not None:
-            by = drawn(world.scene, rng)["offset"]
-            self.moves = (LaneMove(-2.0, -1.0, by),)
+            self._parked = drawn(world.scene, rng)["offset"]
+            self.moves = (LaneMove(-2.0, -1.0, self._parked),)
             road = road.with_profile(world.profile_of(road).moved(*self.moves[0]))
         self._follow(road)
         self._begun, self._phases = 0, list[Phase]()
@@ -185,11 +183,24 @@ class ScriptHand:
         by_driver = not self._phases or self._hands == "wheel"
         is_firm = by_driver and before - self._speed.v > FIRM * view.dt
         self._firm = self._firm + view.dt if is_firm else 0.0
-        if self._phases and self._is_refused and self._lateral.end != 0.0:
-            by = abs(self._lateral.t)
-            self._lateral.slide_to(0.0, max(math.pi / 2 * by / BACK, view.dt))
-            self._phases = [Phase(to=0.0, slides=1.0, until="there")]
+        if self._phases and self._is_refused and self._turns_back(view):
             self._give_up(f"while {self._did(self._begun - 1)}", view)
+
+    def _turns_back(self, view: View) -> bool:
+        """Steers back to the middle of the lane, if it is on its way from there, and not beside whom it goes
+        around."""
+        if self._lateral.end != 0.0:
+            self._lateral.slide_to(0.0, max(math.pi / 2 * abs(self._lateral.t) / BACK, view.dt))
+            self._phases = [Phase(to=0.0, slides=1.0, until="there")]
+            return True
+        is_out = bool(self._around) and len(self._phases) > 1
+        _, met, _ = self._met(self._around) if is_out else ("", self._nobody, 0.0)
+        if not is_out or met.s - met.length / 2 < self._front:
+            return False
+        del self._phases[:-1]
+        self._skipped.append(f"{NEVER} {self._did(self._begun - 1)}: it was given up")
+        self._enter(view)
+        return True
 
     @property
     def _is_refused(self) -> bool:
@@ -208,7 +219,8 @@ class ScriptHand:
     def _did(self, number: int) -> str:
         """Returns in words what a maneuver is."""
         each = self._maneuvers[number]
-        return f"the tested car {MANEUVERS[each.what].said}{' again' * each.before}"
+        whom = each.action.whom or (self._around if number == self._begun - 1 else "")
+        return f"the tested car {MANEUVERS[each.what].said}{whom and ' '}{whom}{' again' * each.before}"
 
     def _met(self, name: str | None = None) -> tuple[str, Met, float]:
         """Returns who is ahead in the lane of the tested car, or has a name: its name, how it is seen from
@@ -216,16 +228,13 @@ class ScriptHand:
         if self._traffic is None:
             return "", self._nobody, 0.0
         actors, states = self._traffic.actors, self._traffic.at(self._triggers.time)
-        boxes = self._line.boxes(states, np.array([each.size[:2] for each in actors]))
+        boxes = self._line.boxes(states, np.array([each.size[:2] for each in actors]).reshape(-1, 2))
         ahead = boxes.along - self._course.s
-        is_it = (
-            np.array([each.name == name for each in actors])
-            if name
-            else ((ahead > 0) & self._line.holds(boxes))
-        )
-        if not (is_it & np.isfinite(ahead)).any():
+        is_it = np.array([each.name == name for each in actors], bool)
+        is_it = (is_it if name else (ahead > 0) & self._line.holds(boxes)) & np.isfinite(ahead)
+        if not is_it.any():
             return "", self._nobody, 0.0
-        first = int(np.where(is_it & np.isfinite(ahead), ahead, np.inf).argmin())
+        first = int(np.where(is_it, ahead, np.inf).argmin())
         half, wide = (float(each[first]) for each in boxes.reach)
         met = Met(float(boxes.along[first]), float(boxes.velocity[first, 0]), 2 * half, 2 * wide)
         return actors[first].name, met, float(boxes.t[first])
@@ -242,7 +251,8 @@ class ScriptHand:
             if each.what in AROUND and each.is_open:
                 wait = self._until_around(each, before)
             elif number in self._ends:
-                needs = self._long(float(self._line.width_at(self._course.s)), self._sideways(each))
+                by = float(self._line.width_at(self._course.s))
+                needs = self._long(by, self._sideways(each, by))
                 wait = 0.0 if self._ends[number] - self._front <= needs else math.inf
             elif number in self._places:
                 left = self._places[number] - self._front
@@ -285,13 +295,17 @@ class ScriptHand:
         if before == math.inf or not name:
             return math.inf
         by, v = self._by(maneuver, name, met, t), self._speed.v
-        lasts = 1.5 * abs(by) / self._sideways(maneuver)
+        lasts = 1.5 * abs(by) / self._sideways(maneuver, by)
         gap = met.s - self._course.s - (met.length + self._box.length) / 2
         return 0.0 if gap <= max((v - met.v) * (lasts + EARLY), FOLLOWING * v + NEAREST) else math.inf
 
     @staticmethod
-    def _sideways(maneuver: Maneuver) -> float:
-        return maneuver.n.get("lateral", LATERAL[maneuver.what])
+    def _sideways(maneuver: Maneuver, by: float) -> float:
+        """Returns the greatest speed in m/s with which a maneuver moves it sideways by some metres."""
+        n = maneuver.n
+        if "duration" in n and "lateral" not in n and maneuver.what != "pull_over":
+            return max(1.5 * abs(by) / n["duration"], NEAREST)
+        return n.get("lateral", LATERAL[maneuver.what])
 
     def _by(self, maneuver: Maneuver, name: str, met: Met, t: float) -> float:
         """Returns by how many metres to the left it goes around somebody."""
@@ -310,42 +324,42 @@ class ScriptHand:
 
     def _go_aside(self, maneuver: Maneuver, view: View) -> None:
         """Begins to change lanes, or to go around somebody; raises SceneError if there is no lane."""
-        lateral, n = self._sideways(maneuver), maneuver.n
+        n, accel = maneuver.n, maneuver.n.get("accel")
+        goal = n.get("to", None if accel is None else FAST * (accel > 0))
+        there = Phase(goal, abs(accel or CHANGE), until="there")
         if maneuver.what in ("pull_out", "pull_over"):
             profile, s = self._world.profile_of(self.road), self._line.to_road(self._course.s)
-            by = -sum(each.by for each in self.moves)
+            by, self._phases = -self._parked, [there]
             if maneuver.what == "pull_over":
                 rims, kerb = profile.rims(s), "left" if profile.left_hand else "right"
                 side = SIGN[maneuver.action.side or kerb]
                 edge = float(rims.left if side > 0 else rims.right)
                 by = edge - side * (self._box.width / 2 + EDGE) - float(profile.middle(s))
-            self._move(by, lateral)
-            goal = n.get("to") if maneuver.what == "pull_out" else None
-            self._phases = [Phase(goal, n.get("accel", CHANGE), until="there")]
-            if maneuver.what == "pull_over":
                 self._phases.append(Phase(0.0, STOP, until="speed"))
                 self._phases += [Phase(lasts=n["duration"])] if "duration" in n else []
+            self._parked += by
+            self._move(by, self._sideways(maneuver, by))
             return
         if maneuver.what == "change_lane":
             at = self._line.to_road(self._course.s), self.road, self._world, self._box.width
-            self._move(offset_of("lane", maneuver.action.side, *at), lateral)
-            self._phases = [Phase(until="there")]
+            by, self._phases = offset_of("lane", maneuver.action.side, *at), [there]
+            self._move(by, self._sideways(maneuver, by))
             return
         self._around, met, t = self._met(maneuver.action.whom)
         by = self._by(maneuver, self._around, met, t) if self._around else 0.0
         if by:
             self._refuse_off_road(maneuver, by, self._line.to_road(met.s))
-            self._move(by, lateral)
-        goal = maneuver.n.get("to")
-        self._phases = [Phase(goal, until="there"), Phase(goal, until="passed"), Phase(goal, until="there")]
+            self._move(by, self._sideways(maneuver, by))
+        self._phases = [there, there._replace(until="passed"), there]
 
     def _refuse_off_road(self, maneuver: Maneuver, by: float, s: float) -> None:
         profile = self._world.profile_of(self.road)
         t, edges = float(profile.middle(s)) + by, profile.edges(s)
         lacks = self._box.width / 2 + max(t - float(edges.left), float(edges.right) - t)
         if lacks > 0:
-            does = f"the tested car {MANEUVERS[maneuver.what].said} {self._around}"
-            raise SceneError(f"{does} at {s:.0f} m, where {lacks:.1f} m of road are missing")
+            raise SceneError(
+                f"{self._did(self._begun - 1)} at {s:.0f} m, where {lacks:.1f} m of road are missing"
+            )
 
     @staticmethod
     def _decel(maneuver: Maneuver) -> float:
@@ -359,7 +373,8 @@ class ScriptHand:
         """Begins the phase that is next."""
         phase = self._phases[0]
         if self._around and len(self._phases) == 1 and self.moves:
-            self._move(-self.moves[-1].by, self._sideways(self._maneuvers[self._begun - 1]))
+            by = -self.moves[-1].by
+            self._move(by, self._sideways(self._maneuvers[self._begun - 1], by))
             self._around = ""
         self._since, self._planned, self._v = view.time, self._speed.v, self._speed.v
         if phase.to is not None:
@@ -372,7 +387,7 @@ class ScriptHand:
             self._compare(phase, view.time - self._since)
             if phase.until == "passed" and self._met(self._around)[1] is self._nobody:
                 did = self._did(self._begun - 1)
-                self._skipped.append(f"{NEVER} {did} {self._around}: it had left the road before")
+                self._skipped.append(f"{NEVER} {did}: it had left the road before")
             if self._phases:
                 self._enter(view)
             if not self._phases or self._phases[0].lasts == math.inf:
@@ -447,7 +462,7 @@ class ScriptHand:
         """What the car was told to do and has not begun so far, in sentences."""
         found = list(self._skipped)
         if self._around and self._phases:
-            found.append(f"{NEVER} {self._did(self._begun - 1)} {self._around}: it had not come past")
+            found.append(f"{NEVER} {self._did(self._begun - 1)}: it had not come past")
         if self._begun < len(self._maneuvers):
             each = self._maneuvers[self._begun]
             comes = each.is_open or bool({"time", "station"} & {*each.n})
