@@ -183,8 +183,9 @@ class ScriptHand:
         by_driver = not self._phases or self._hands == "wheel"
         is_firm = by_driver and before - self._speed.v > FIRM * view.dt
         self._firm = self._firm + view.dt if is_firm else 0.0
-        if self._phases and self._is_refused and self._turns_back(view):
-            self._give_up(f"while {self._did(self._begun - 1)}", view)
+        did = f"while {self._did(self._begun - 1)}" if self._phases and self._is_refused else ""
+        if did and self._turns_back(view):
+            self._give_up(did, view)
 
     def _turns_back(self, view: View) -> bool:
         """Steers back to the middle of the lane, if it is on its way from there, and not beside whom it goes
