@@ -245,6 +245,8 @@ def nearest(drive: Drive) -> float:
         own = shapely.Polygon(drive.corners(step))
         states = drive.others.at(float(drive["time"][step]))
         for actor, (x, y, _, heading, _) in zip(drive.others.actors, states.tolist(), strict=True):
+            if np.isnan(x):
+                continue
             box = shapely.box(*(np.array(actor.size[:2]) @ np.array([[-0.5, 0, 0.5, 0], [0, -0.5, 0, 0.5]])))
             there = shapely.affinity.translate(shapely.affinity.rotate(box, heading, (0, 0), True), x, y)
             found = min(found, own.distance(there))
