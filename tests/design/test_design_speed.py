@@ -42,7 +42,7 @@ PLANS = [
     "straight up; straight down | speed=120",
     "turn x2; straight 300 down | speed=30 hard",
     "| len=3000 speed=50 from=west",
-    "turn // crossroads left // | hills=1 // turn | down || speed=80 from=southwest",
+    "turn // crossroads left // | hills=1 // t_junction right // turn x2 | down || speed=80 from=southwest",
     "| speed=50 // crossroads left // turn left || speed=50 left_hand from=northeast",
     "turn left; turn right | country",
     "turn | residential // crossroads left // turn x2 || residential",
