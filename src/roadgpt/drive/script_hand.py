@@ -86,11 +86,10 @@ class ScriptHand:
             self._put(number)
         self._nobody = Met(FAR, 0.0, box.length, box.width)
         self._lateral, self.moves = Lateral(), tuple[LaneMove, ...]()
-        self._parked = 0.0
-        """How far it was moved to the left of its lane, from which it pulls out."""
+        self._lane = 0.0
+        """How far the lane to which it goes back is to the left of that in which it was at first."""
         if world.scene.offset is not None:
-            self._parked = drawn(world.scene, rng)["offset"]
-            self.moves = (LaneMove(-2.0, -1.0, self._parked),)
+            self.moves = (LaneMove(-2.0, -1.0, drawn(world.scene, rng)["offset"]),)
             road = road.with_profile(world.profile_of(road).moved(*self.moves[0]))
         self._follow(road)
         self._begun, self._phases = 0, list[Phase]()
@@ -330,7 +329,7 @@ class ScriptHand:
         there = Phase(goal, abs(accel or CHANGE), until="there")
         if maneuver.what in ("pull_out", "pull_over"):
             profile, s = self._world.profile_of(self.road), self._line.to_road(self._course.s)
-            by, self._phases = -self._parked, [there]
+            by, self._phases = self._back(), [there]
             if maneuver.what == "pull_over":
                 rims, kerb = profile.rims(s), "left" if profile.left_hand else "right"
                 side = SIGN[maneuver.action.side or kerb]
@@ -338,12 +337,12 @@ class ScriptHand:
                 by = edge - side * (self._box.width / 2 + EDGE) - float(profile.middle(s))
                 self._phases.append(Phase(0.0, STOP, until="speed"))
                 self._phases += [Phase(lasts=n["duration"])] if "duration" in n else []
-            self._parked += by
             self._move(by, self._sideways(maneuver, by))
             return
         if maneuver.what == "change_lane":
             at = self._line.to_road(self._course.s), self.road, self._world, self._box.width
             by, self._phases = offset_of("lane", maneuver.action.side, *at), [there]
+            self._lane += by - self._back()
             self._move(by, self._sideways(maneuver, by))
             return
         self._around, met, t = self._met(maneuver.action.whom)
@@ -352,6 +351,11 @@ class ScriptHand:
             self._refuse_off_road(maneuver, by, self._line.to_road(met.s))
             self._move(by, self._sideways(maneuver, by))
         self._phases = [there, there._replace(until="passed"), there]
+
+    def _back(self) -> float:
+        """Returns by how many metres to the left it goes back to its lane."""
+        s = self._line.to_road(self._course.s - self._box.ahead)
+        return self._lane - self._world.profile_of(self.road).aside_at(s)
 
     def _refuse_off_road(self, maneuver: Maneuver, by: float, s: float) -> None:
         profile = self._world.profile_of(self.road)
@@ -374,7 +378,7 @@ class ScriptHand:
         """Begins the phase that is next."""
         phase = self._phases[0]
         if self._around and len(self._phases) == 1 and self.moves:
-            by = -self.moves[-1].by
+            by = self._back()
             self._move(by, self._sideways(self._maneuvers[self._begun - 1], by))
             self._around = ""
         self._since, self._planned, self._v = view.time, self._speed.v, self._speed.v

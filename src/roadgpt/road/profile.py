@@ -291,10 +291,14 @@ class Profile:
     def _beside(self, edges: Edges, s: ArrayLike) -> Edges:
         return Edges(*(each + _at(self.aside, s) for each in edges))
 
+    def aside_at(self, s: float) -> float:
+        """Returns where the tested car is to keep at a station, in metres to the left of its lane."""
+        return float(_at(self.aside, s))
+
     def moved(self, start: float, end: float, by: float) -> "Profile":
         """Returns the same with the driven lane moved sideways between two stations, by metres to the left,
         and so far from there on. The slope is 0 at both ends."""
-        base, long = float(_at(self.aside, start)), end - start
+        base, long = self.aside_at(start), end - start
         rows = [row for row in as_cubics(self.aside).rows if row[0] < start]
         rows.append((start, (base, 0.0, 3 * by / long**2, -2 * by / long**3)))
         return replace(self, aside=CubicProfile.of_rows([*rows, (end, (base + by, 0.0, 0.0, 0.0))]))
