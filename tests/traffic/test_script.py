@@ -346,7 +346,8 @@ def test_places_across_the_lane() -> None:
     [
         ("truck ahead: brake 6 after turn 3", "names turn 3, but the road has 2 turns"),
         ("car ahead after junction 1", "names junction 1, but the road has no junction"),
-        ("cones ahead gap=900", "would stand at"),
+        ("cones ahead gap=900", "but the road ends at"),
+        ("van beside right s=0.7", "would stand at 1 m, but the road begins at 0 m"),
         ("car lane left: keep; van lane right: keep", "no second lane of the same direction on the"),
         ("car lane left gap=-150: cut_in", "before the begin of the road"),
         ("car lane left gap=20 v=60: cut_in gap=40", "never comes to where"),

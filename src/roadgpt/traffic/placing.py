@@ -229,8 +229,9 @@ class Placing:
             self._refuse("drives away before it is on the road; give another place")
         is_behind = self.role.where == "behind" and not self.stage.world.first_speed
         if v == 0 and not self.triggers.waits and not course.is_there(is_behind, False):
-            length = f"{self.stage.road.length:.0f} m"
-            self._refuse(f"would stand at {course.along:.0f} m, but the road ends at {length}; change it")
+            is_early = course.along < self.size.length / 2
+            end = "begins at 0" if is_early else f"ends at {self.stage.road.length:.0f}"
+            self._refuse(f"would stand at {course.along:.0f} m, but the road {end} m; change it")
         if self.held and course.along + ROLL * v < self.size.length / 2:
             self._refuse("would have to act before the begin of the road; give another gap or speed")
         wait = self.triggers.wait(first) if first and (self.triggers.waits or self.held) else 0.0
