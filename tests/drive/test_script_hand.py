@@ -220,6 +220,13 @@ def test_lanes_are_changed_before_the_junction_that_is_named() -> None:
     assert begins - 15.0 < at(run.drive, "s", hand[2]) + FRONT < begins + 1.0
 
 
+def test_who_cannot_go_around_is_stuck_in_the_end() -> None:
+    scene = "ego v=40: overtake car 1; car ahead gap=100 v=0; barrier ahead gap=97 t=4"
+    drive = drive_of(f"straight 400 && {scene}")
+    assert drive.ended == "stuck"
+    assert drive.duration < 160.0
+
+
 def test_standing_by_order_is_not_being_stuck() -> None:
     drive = drive_of("straight 300 && ego v=50: stop 3 s=60, wait 25")
     assert drive.ended == "goal"

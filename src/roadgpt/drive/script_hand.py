@@ -457,9 +457,10 @@ class ScriptHand:
 
     @property
     def has_end(self) -> bool:
-        """Whether what it does ends by itself, and the car may stand until then."""
-        if self._phases and all(each.lasts != math.inf for each in self._phases):
-            return True
+        """Whether it makes the car stand, or go on, for a time that ends by itself."""
+        lasts = self._phases[0].lasts if self._phases else math.inf
+        if lasts != math.inf:
+            return lasts is not None
         return any("time" in each.n for each in self._maneuvers[self._begun :][:1])
 
     @property
