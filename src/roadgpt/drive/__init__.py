@@ -9,7 +9,7 @@ This package has two kinds of plug-ins. A simulator (``simulators/``) is a car a
         def simulate(self, road, world, driver, seed, keep_driving=False, traffic=None) -> Drive
 
     class Driver:
-        def start(self, road, world, seed) -> None     # optional: called once, before time 0
+        def start(self, road, world, seed) -> None     # optional: called before time 0
         def steer(self, view: View) -> Command         # called every 20 ms"""
 
 import logging
@@ -59,7 +59,8 @@ __all__ = [
 class Driver(Protocol):
     """Controls the car.
 
-    A driver may also have a method ``start(road, world, seed)``. This method is called once before time 0.
+    A driver may also have a method ``start(road, world, seed)``. This method is called before time 0, and
+    again where a scene makes the car change lanes, for a road whose driven lane is the new one.
     A driver may have an attribute ``name``. The Drive records this name; without a name, the Drive records
     the name of the driver's class. A driver that lets somebody else drive for a while, such as the person at
     the wheel, names them in an attribute ``handed_to``, which is None while it drives itself. The Drive
