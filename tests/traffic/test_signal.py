@@ -69,6 +69,13 @@ def test_junctions_get_lights_where_they_are_told_and_none_against_the_words() -
         run_of("straight 150 // crossroads straight stop // straight 100 && lights red", "reference")
 
 
+def test_what_a_part_lacks_is_named() -> None:
+    with pytest.raises(BriefError, match="it lacks red or yellow or green"):
+        read_plan("crossroads lights && lights")
+    with pytest.raises(BriefError, match="it lacks s="):
+        read_plan("crossroads lights && slippery mu=0.3")
+
+
 @pytest.mark.parametrize("part", ["lights red", "lights green time=5", "lights yellow time=2..8"])
 def test_plans_with_lights_read_back(part: str) -> None:
     brief = read_plan(f"crossroads lights && {part}")

@@ -469,7 +469,12 @@ def _made(model: type[Model], fields: dict[str, object], text: str) -> Model:
     try:
         return model.model_validate(fields)
     except ValidationError as error:
-        problem = error.errors()[0]["msg"].removeprefix("Value error, ")
+        first = error.errors()[0]
+        problem = first["msg"].removeprefix("Value error, ")
+        if first["type"] == "missing":
+            field = str(first["loc"][-1])
+            key = f"{NUMBERS[field].key}=" if field in NUMBERS else " or ".join(SCENES["signals"]["rows"])
+            problem = f"it lacks {key}"
         raise BriefError(f"the plan '{text.strip()[:60]}' cannot be read: {problem}") from error
 
 
