@@ -26,10 +26,19 @@ def load_referee() -> ModuleType | None:
 
 def networks_referee() -> ModuleType:
     """The outside referee of networks; where it is not at hand, the test is skipped."""
-    if not (SHARED / "referee_networks.py").exists():
-        pytest.skip("the referee of networks is not at hand")
+    return _referee_of("networks")
+
+
+def traffic_referee() -> ModuleType:
+    """That of scenes with others on the road."""
+    return _referee_of("traffic")
+
+
+def _referee_of(what: str) -> ModuleType:
+    if not (SHARED / f"referee_{what}.py").exists():
+        pytest.skip(f"the referee of {what} is not at hand")
     sys.path.insert(0, str(SHARED))
     try:
-        return importlib.import_module("referee_networks")
+        return importlib.import_module(f"referee_{what}")
     finally:
         sys.path.remove(str(SHARED))

@@ -197,7 +197,8 @@ ROAD = language(
 JUNCTION, JUNCTIONS_OF_MAP = language(PARTS["junction"], "junction"), language(PARTS["junctions"])
 MAP_OF_ROADS = language(PARTS["map"], "map", route=read_ways)
 TESTED_CAR = "ego"
-AN_ACTOR = language(_of_scene(Role, NUMBERS, where=tuple(PLACES), side=(*SIDES, "opposite")), "road user")
+OF_ACTORS = _of_scene(Role, NUMBERS, where=tuple(PLACES), side=(*SIDES, "opposite")) | {"hits": Part("hits")}
+AN_ACTOR = language(OF_ACTORS, "road user", hits=lambda text: text.replace("-", " "))
 AN_ACTION = language(_of_scene(Action, NUMBERS, side=SIDES), "manoeuvre")
 OF_ITSELF = _of_scene(Scene, NUMBERS, turn=WAYS, person=get_args(Person)) | {"lane": Part("lane")}
 ITSELF = language(OF_ITSELF, TESTED_CAR, lane=_lane_number)
@@ -258,7 +259,7 @@ def _text(field: str, part: Part, value: Any) -> str:
     elif part.words:
         said = next((word for word, its in part.words.items() if its == value), "")
     else:
-        said = figure(value, 6)
+        said = value if isinstance(value, str) else figure(value, 6)
     return said if not part.key else f"{part.key}{said}" if part.key == COUNTED else f"{part.key}={said}"
 
 
@@ -565,6 +566,7 @@ def scene_fields(text: str) -> dict[str, object]:
 def _read_role(text: str) -> Role:
     head, _, rest = text.partition(":")
     fields: dict[str, object] = {}
+    head = re.sub(rf"\bhits=({'|'.join(ROAD_USERS)}) (?=\d)", r"hits=\1-", head)  # one word, as its others
     kind, *words = _without_mark(head, fields)
     if kind not in ROAD_USERS:
         kind, words = "car", [kind, *words]

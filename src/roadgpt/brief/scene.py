@@ -13,6 +13,7 @@ from roadgpt.brief.amount import Amount, Frozen, exactly, span
 from roadgpt.brief.words import MOST_LANES, LandKind
 from roadgpt.language.names import (
     ActorKind,
+    Face,
     Flow,
     Landform,
     Light,
@@ -55,6 +56,9 @@ AROUND: tuple[What, ...] = ("overtake", "pass")
 MOST_MORE = 3
 """How many more of a kind there are at most where a scene says "2 or more"."""
 LANES_AWAY = {"lane": 1, "far": 2}
+MIRROR = "mirror"
+STRUCK: tuple[str, ...] = (*get_args(Face), MIRROR)
+"""What of the tested car can be hit."""
 ONE_OF = (
     ("gap", "headway", "lead", "station"),
     ("headway", "lead", "station", "at"),
@@ -154,6 +158,9 @@ class Role(Frozen):
     comes from, or else from the kerb. Beyond 0 to 100, one touches the side of the other, or passes."""
     offset: Amount | None = None
     away: Amount | None = None
+    hits: str | None = None
+    """Which face of the tested car it hits, or its "mirror", if that does not react: ``impact`` percent along
+    the face; or whom else it hits, such as "van 1". Where it is and when it acts are found for that."""
     at: Mark | None = None
     actions: tuple[Action, ...] = ()
 
@@ -168,7 +175,8 @@ class Role(Frozen):
         if not {self.count.lo, self.count.hi} <= {None, *range(1, 51)}:
             raise ValueError(f"1 to 50 of a kind can be in one place, not {self.count}")
         for field in _given(self, one):
-            if field in NUMBERS and self.where not in NUMBERS[field].where:
+            is_on_face = field == "impact" and self.hits
+            if field in NUMBERS and self.where not in NUMBERS[field].where and not is_on_face:
                 raise ValueError(f"who is {spot.said} has no {NUMBERS[field].key}=; leave it out")
         if self.gap and self.at and (self.where not in ("crossing", "beside") or self.at.word == "in"):
             raise ValueError(f"{one} has 'gap' and '{self.at}'; give one of them")
@@ -192,6 +200,16 @@ class Role(Frozen):
             raise ValueError(f"{one} cannot brake from {self.speed} to {first.to} km/h")
         return self
 
+    @model_validator(mode="after")
+    def _hits_one(self) -> Self:
+        if self.hits and self.count != exactly(1):
+            raise ValueError(f"one hits the {self.hits}, not {self.count}; write an actor for each")
+        if self.hits and self.impact:
+            ends = span(self.impact)
+            if self.hits not in get_args(Face) or ends.lo < 0 or ends.hi > 100:
+                raise ValueError(f"impact={self.impact} is no share of the {self.hits}; leave it out")
+        return self
+
     @property
     def marks(self) -> tuple[Mark, ...]:
         """The parts of the route, and what others do, that say where it is and when it acts."""
@@ -211,7 +229,9 @@ class Role(Frozen):
         side = f" {spot.side} {self.side}{' side' * (self.side == 'opposite')}" if self.side else ""
         is_one = self.count == exactly(1)
         some = one_of(self.kind) if is_one else f"{self.count} {several_of(self.kind)}"
-        said = ", ".join([f"{some} {spot.said}{side}", *_said(self)])
+        of = "the tested car's " if self.hits in STRUCK else ""
+        hit = [f"to hit {of}{(self.hits or '').replace('_', ' ')}"] if self.hits else []
+        said = ", ".join([f"{some} {spot.said}{side}", *_said(self), *hit])
         who = "that" if is_one else "each of which"
         return f"{said}, {who} {', then '.join(map(str, self.actions))}" if self.actions else said
 
@@ -403,6 +423,15 @@ class Scene(Frozen):
                 same = [each for each in self.actors if each.kind == event.of][event.number - 1 :][:1]
                 if not same or same[0] is who or event.what not in [each.what for each in same[0].actions]:
                     raise ValueError(f"'{event}' needs another {event.of} that does '{event.what}'; name one")
+        return self
+
+    @model_validator(mode="after")
+    def _has_whom_it_names(self) -> Self:
+        for role in self.actors:
+            others = [f"{each.kind} {number}" for number, each in _counted(self.actors) if each is not role]
+            if role.hits and role.hits not in (*STRUCK, *others):
+                faces = ", ".join(STRUCK)
+                raise ValueError(f"'{role}': name another one of the scene, or of the tested car {faces}")
         return self
 
     @property

@@ -5,7 +5,7 @@ Two boxes are apart if a line along a side of one of them separates them (the se
 Gottschalk, Lin and Manocha 1996). The same lines say so for numbers, in machine code, and for arrays."""
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,8 @@ from roadgpt.compiled import compiled, inlined
 Floats = NDArray[np.float64]
 OUTLINE = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
 """Counter-clockwise from the rear right, in lengths and widths."""
+CORNER = 0.02  # m, within which a corner belongs to the place of contact
+PARALLEL = np.radians(20.0)  # two sides at a smaller angle meet flat; else a corner meets a side
 
 
 def turned(points: Floats, angle: Floats | float) -> Floats:
@@ -69,6 +71,53 @@ def distance(away: Floats, heading: Floats, size: Floats, heading_2: Floats, siz
         least = np.minimum(least, np.hypot(*np.moveaxis(np.maximum(beyond, 0.0), -1, 0)).min(axis=1))
     apart = separation(away, heading, size, heading_2, size_2).max(axis=-1)
     return np.where(apart < 0, 0.0, least)
+
+
+class Touch(NamedTuple):
+    """How two boxes touch."""
+
+    spot: Floats
+    """The middle of the place (x, y)."""
+    faces: tuple[str, ...]
+    """The side of each that is touched: front, rear, left or right."""
+    place: float
+    """Where on the face of the first one that is, as a share: of front and rear from the left, of the sides
+    from the front."""
+
+
+def touching(place: Floats, heading: Floats, size: Floats) -> Touch:
+    """Returns how two boxes touch, from their middles (2, 2), headings (2,) and sizes (2, 2)."""
+    outlines = corners(place, heading, size)
+    inside = [
+        point
+        for mine in (0, 1)
+        for point in outlines[mine]
+        if (np.abs(turned(point - place[1 - mine], -heading[1 - mine])) <= size[1 - mine] / 2 + CORNER).all()
+    ]
+    spot = np.mean(inside, axis=0) if inside else place.mean(axis=0)
+    away = place[1] - place[0]
+    apart = separation(away, heading[0], size[0], heading[1], size[1])
+    faces = tuple(
+        _face(n, away * (1 - 2 * n), heading, apart, turned(spot - place[n], -heading[n])) for n in (0, 1)
+    )
+    ahead, left = turned(spot - place[0], -heading[0]) / size[0]
+    share = 0.5 - (left if faces[0] in ("front", "rear") else ahead)
+    return Touch(spot, faces, float(np.clip(share, 0.0, 1.0)))
+
+
+def _face(mine: int, away: Floats, heading: Floats, apart: Floats, spot: Floats) -> str:
+    """Returns with which side box ``mine``, 0 or 1, met the other, which is ``away`` from it: that along the
+    line on which both are ``apart`` the most. A corner that meets a side is one of the front or the rear, as
+    with nuPlan; ``spot`` is where it is."""
+    flat, is_across = divmod(int(apart.argmax()), 2)
+    ahead, left = turned(away, -heading[mine])
+    turn = (heading[mine] - heading[flat] + np.pi / 4) % np.pi - np.pi / 4  # -45 to 135 degrees
+    is_crossed = turn > np.pi / 4
+    if abs(turn - is_crossed * np.pi / 2) > PARALLEL:
+        return "front" if spot[0] > 0 else "rear"
+    if is_across != is_crossed:
+        return "left" if left > 0 else "right"
+    return "front" if ahead > 0 else "rear"
 
 
 _along, _reach = inlined(along), inlined(reach)

@@ -243,7 +243,7 @@ def _is_staged(run: Run) -> bool:
     from roadgpt.traffic import begin  # roads without others do not need it
 
     try:
-        begin(run.road, run.world, run.seed)
+        begin(run.road, run.world, run.seed, aims={})  # who is to hit somebody is aimed once, for the drive
     except Exception as error:  # what else goes wrong is told when the road is driven
         return not isinstance(error, SceneError)
     return True

@@ -3,11 +3,12 @@
 Three movers share the work: ``replay`` has recorded tracks, ``script`` a scene's actors, ``idm`` its flow.
 They are no plug-ins: a scene says who is there, and a simulator of your own moves them as it likes."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadgpt.traffic.actor import SIZES, STEP, Actor, Size, TestedCar, Tracks
-from roadgpt.traffic.traffic import Mover, Stage, Traffic
+from roadgpt.traffic.traffic import Aiming, Mover, Stage, Traffic
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -27,14 +28,17 @@ __all__ = [
 
 
 def begin(
-    road: "Road", world: "World", seed: int, replay: Tracks | Path | str | None = None
-) -> Traffic | None:
+    road: "Road", world: "World", seed: int, replay: Tracks | Path | str | None = None,
+    aims: Mapping[int, Aiming | None] | None = None,
+) -> Traffic | None:  # fmt: skip
     """Returns the others who are on the road that the tested car drives; None if nobody else is.
 
     Args:
         world: its scene says who else is there.
         seed: of the movers that draw numbers.
         replay: recorded tracks, or the file that holds them (see ``recording``).
+        aims: see ``Stage``; None: those with which who is to hit the tested car hits one that keeps to the
+            middle of its lane and its speed, unless the scene tells it something else.
 
     Raises:
         UsageError: the file cannot be used, or an actor of the scene cannot be, or act, on this road."""
@@ -49,7 +53,11 @@ def begin(
 
         tracks = replay if isinstance(replay, Tracks) else read_recording(Path(replay)).on(road, world)
         movers.append(ReplayMover(tracks))
-    stage = Stage(road, world, seed, lights)
+    stage = Stage(road, world, seed, lights, aims or {})
+    if aims is None and any(each.hits for each in scene.actors) and not scene.has_script:
+        from roadgpt.traffic.aiming import aims_of, steady
+
+        stage = stage._replace(aims=aims_of(stage, [*steady(road, world)]))
     if scene.actors or scene.parked:
         from roadgpt.traffic.script import Script
 

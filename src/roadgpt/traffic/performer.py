@@ -1,6 +1,7 @@
 """Somebody of a scene on its way: it meets the tested car, and does its maneuvers one after another."""
 
 import math
+from typing import cast
 
 from roadgpt.brief.scene import ACCELERATES, ON_ITS_WAY
 from roadgpt.network.line import GRIP
@@ -37,6 +38,8 @@ class Performer:
         self.clock = 0.0
         """The rest of the maneuver that it does, and for how long the first of these phases has lasted."""
         self._matches = placed.matches
+        self.is_there, self.foe = True, cast("Performer | None", None)
+        """Whether it takes part at all, and whom of the others it is to hit."""
 
     @property
     def limited(self) -> dict[int, tuple[str, bool]]:
@@ -50,6 +53,8 @@ class Performer:
     def minds(self) -> bool:
         """Whether it drives behind the tested car as behind others: who comes from behind to overtake it, and
         others who have done all that they do, or are late where they meet it."""
+        if self.role.hits:
+            return False
         if self.role.where == "behind":
             return any(each.what == "overtake" for each in self.maneuvers)
         has_done, met = self.begun == len(self.maneuvers) and not self.phases, self.triggers.met
@@ -60,8 +65,11 @@ class Performer:
     def state(self) -> tuple[float, ...] | None:
         """Returns its state; None while it is not there: its box is not yet, or no longer, on its way."""
         v, slope, course = self.longitudinal.v, self.lateral.slope, self.course
-        is_behind = self.role.where == "behind" and not self.placed.stage.world.first_speed
-        if not course.is_there(is_behind, v > 0 and len(self.shown) < len(self.maneuvers)):
+        is_behind = self.role.where == "behind" or bool(self.role.hits)
+        is_behind &= not self.placed.stage.world.first_speed
+        if not self.is_there or not course.is_there(
+            is_behind, v > 0 and len(self.shown) < len(self.maneuvers)
+        ):
             return None
         x, y, z, heading = course.way.pose(course.s, self.lateral.t)
         turned = math.atan(slope)

@@ -14,7 +14,7 @@ import numpy as np
 from roadgpt.brief.scene import HEAD_ON, LEAVES, ON_ITS_WAY, Action, Role
 from roadgpt.errors import SceneError
 from roadgpt.geometry.boxes import touch
-from roadgpt.language.table import ALONG, MANEUVERS, MOVING, NUMBERS, PLACES, USUAL_SPEEDS, one_of
+from roadgpt.language.table import ALONG, CUES, MANEUVERS, MOVING, NUMBERS, PLACES, USUAL_SPEEDS, one_of
 from roadgpt.network.line import SPACING, Line
 from roadgpt.road.road import GOAL
 from roadgpt.traffic.actor import SIZES, STILL
@@ -24,7 +24,7 @@ from roadgpt.traffic.lateral import SHARPEST, Lateral, Offsets
 from roadgpt.traffic.longitudinal import EASY, Longitudinal, reach
 from roadgpt.traffic.maneuver import LATERAL, ROLL, TURNING, Maneuver, drawn
 from roadgpt.traffic.places import stretch_of
-from roadgpt.traffic.traffic import Stage
+from roadgpt.traffic.traffic import Aiming, Stage
 from roadgpt.traffic.triggers import LAST, Triggers
 from roadgpt.traffic.ways import way_of
 
@@ -40,6 +40,7 @@ STANDS = 2.0  # m between several alike that stand
 FARTHEST = 60.0  # m, from which somebody comes to cross at a time to collision that is said
 ONCOMING = 40.0  # m between several alike that come towards the tested car
 NEAR = 10.0  # m before the meeting, where a vehicle waits at a junction
+INSIDE = 0.3  # m, by which who drifts against the side of the tested car would come into it
 CROSSINGS = ("crossing", "crosswalk")
 PLACED = ("gap", "headway", "lead", "station")
 
@@ -57,6 +58,11 @@ class Placing:
         self.size, where = SIZES[role.kind], role.where
         self.n, numbers = drawn(role, rng), [drawn(each, rng) for each in role.actions]
         self.n |= {field: alike[0].n[field] for field in PLACED if alike and getattr(role, field)}
+        is_in_front = role.hits in ("front", "rear") and where in ("ahead", "behind", "oncoming")
+        self.on_face = (
+            self.n.pop("impact", 0.5) if role.hits and not is_in_front else self.n.get("impact", 0.5)
+        )
+        """The share of the face that it is to hit from where that counts."""
         cruise, actions = self._cruise(), [*zip(role.actions, numbers, strict=True)]
         comes = where == "junction" and "away" in self.n
         if not actions and (comes or where in CROSSINGS):
@@ -120,6 +126,7 @@ class Placing:
             each.is_at_line = each is self.lead and not self.is_placed and each.what in ("cut_in", "cross")
         turns_off = is_along and "turn_off" in self.whats
         if is_along:
+            self._drift_to_hit(v)
             self.course.s = self._beside()
             self.lateral.t = self.offsets.at_first(self.course.s, self.whats)
             if self.first == "cut_in" and {"time", "distance", "station"}.isdisjoint(self.cue):
@@ -145,6 +152,45 @@ class Placing:
         self.held = self.held and (s - self.met.s, self.held[1])
         self.longitudinal.bend(self.longitudinal.told)
         self.longitudinal.goal = self.longitudinal.v
+
+    def _drift_to_hit(self, v: float) -> None:
+        """Lets somebody drift who is to hit somebody, is beside the lane, and does nothing that leads it
+        sideways: for a side of the tested car as far as it needs, else to its middle."""
+        is_open = {*LATERAL} & {*self.whats} <= {"drift"}
+        aside = (
+            abs(self.offsets.at_first(self.met.s, self.whats)) if self.role.hits and v and is_open else 0.0
+        )
+        apart = (self.size.width + self.met.width) / 2
+        if aside < apart:
+            return
+        if "drift" not in self.whats:
+            self.maneuvers.append(Maneuver(Action(what="drift"), {}, rolls=self.rolls))
+            self.lead = self.lead or self.maneuvers[-1]
+            self.cue, self.first = self.lead.n, self.lead.what
+        shift = aside if self.role.hits in ("front", "rear") else aside - apart + INSIDE
+        for each in self.maneuvers:
+            each.n |= {"shift": shift} if each.what == "drift" and "shift" not in each.n else {}
+
+    @property
+    def freedoms(self) -> tuple[str, ...]:
+        """What of an Aiming the scene leaves open, best first."""
+        lead, along = self.lead, ("along",) * (not self.is_placed or self.course.meeting is not None)
+        slides = any(each.what in LATERAL for each in self.maneuvers) or self.course.meeting is not None
+        is_open = slides and lead and {*CUES, "at"}.isdisjoint(lead.action.model_fields_set)
+        may = {"offset", "overlap"}.isdisjoint(self.n) and (not slides or self.first == "drift")
+        aside, later = ("aside",) * may, ("time",) * bool(is_open)
+        return (*aside, *along, *later) if self.role.hits in ("front", "rear") else (*along, *later, *aside)
+
+    def aim(self, aim: Aiming) -> None:
+        """Moves it as far as it needs to hit somebody."""
+        course = self.course
+        if course.meeting:
+            course.meeting = course.meeting._replace(own=course.meeting.own + aim.along)
+        self.lateral.t += aim.aside
+        if aim.time is not None:
+            self.cue.pop("ttc", None)
+            self.cue["time"] = max(aim.time, 0.0)
+        self.put(course.s + (0.0 if self.triggers.waits else aim.along))
 
     @property
     def begins(self) -> float:

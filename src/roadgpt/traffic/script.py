@@ -49,6 +49,7 @@ class Script:
     def _placed(self, met: Met) -> list[Performer]:
         """Returns everybody where they are at first, as seen from the tested car."""
         found, kinds = list[Performer](), Counter[str]()
+        self._of_role: dict[int, Performer] = {}
         self.events: dict[tuple[str, ...], float] = {}
         """When what the actors do has begun and ended, as ``Maneuver.event`` names it."""
         for number, role in enumerate(self._stage.world.scene.actors):
@@ -60,8 +61,23 @@ class Script:
                 rng = np.random.default_rng([self._stage.seed, number, copy])
                 alike.append(Placing(self._stage, self._way, role, met, rng, alike, self.events))
             found += [Performer(each, None if each.copy else name) for each in alike]
+            self._of_role[number] = found[-len(alike)]
         self._order([each.placed for each in found])
+        named = {f"{kind} {count}": each for each in found for kind, count in [each.name or ("", "")]}
+        for number, aim in self._stage.aims.items():
+            each = self._of_role[number]
+            each.is_there, each.foe = aim is not None, named.get(str(each.role.hits))
+            if aim is not None:
+                each.placed.aim(aim)
+                each.placed.check()
         return found
+
+    def role(self, number: int) -> tuple[Performer, int, int | None]:
+        """Returns the first of those of one of the roles of the scene, its row in states, and that of whom
+        else it is to hit."""
+        who = self._of_role[number]
+        foe = None if who.foe is None else self._performers.index(who.foe)
+        return who, self._performers.index(who), foe
 
     def _order(self, everybody: list[Placing]) -> None:
         """Puts those ahead in the tested car's lane behind one another where the scene leaves open where they
@@ -156,6 +172,8 @@ class Script:
                 to = np.abs(left - lateral.end) if lateral.slide else np.inf
                 near = np.where(np.abs(speed) < STILL, to, near)
             is_ahead = (apart > SPACING) & (gap < IN_SIGHT) & (near < wide + each.size.width / 2 + BESIDE)
+            for other, foe in enumerate(self._performers if self._stage.aims else ()):
+                is_ahead[other] &= foe is not each.foe and foe.foe is not each
             is_ahead[-1] &= each.minds and ahead * speed[-1] >= ALONG * car.speed
             if is_ahead.any():
                 first = int(np.where(is_ahead, gap, np.inf).argmin())

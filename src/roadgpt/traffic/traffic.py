@@ -1,7 +1,8 @@
 """Moves all the others on the road together, whichever movers they belong to."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
@@ -23,6 +24,18 @@ class Stage(NamedTuple):
     seed: int
     lights: "Lights | None" = None
     """The traffic lights, which run for everybody; None where nobody looks at them."""
+    aims: "Mapping[int, Aiming | None]" = MappingProxyType({})
+    """How who is to hit somebody differs from what the scene says alone, by its number there (see
+    ``roadgpt.traffic.aiming``); None: it is not there."""
+
+
+class Aiming(NamedTuple):
+    """By what somebody is moved at first so that it hits somebody, in metres and seconds."""
+
+    along: float = 0.0
+    aside: float = 0.0
+    time: float | None = None
+    """When its first maneuver that changes something begins; None: when the scene says."""
 
 
 class Mover(Protocol):

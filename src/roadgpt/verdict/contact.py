@@ -11,17 +11,18 @@ part of it is outside its lane. It is not the tested car's if it stands, if it i
 who moves, or at a side within its lane.
 """
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.geometry.boxes import corners, separation, turned
+from roadgpt.geometry.boxes import corners, separation, touching, turned
 from roadgpt.geometry.curve import Array
+from roadgpt.language.names import Face
 from roadgpt.network.lanes import HEADROOM
 from roadgpt.traffic.actor import HEADING, SPEED, STEP, X, Y, Z
 from roadgpt.verdict.oracle import BoolArray
-from roadgpt.verdict.verdict import STANDS, Contact, Face, Incident
+from roadgpt.verdict.verdict import STANDS, Contact, Incident
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
@@ -29,8 +30,6 @@ if TYPE_CHECKING:
 
 TOUCH = 1e-3  # m; positions of tracks are rounded to it
 SLACK = 1.0  # m, by which the car's way between two samples of a track may differ from a straight line
-CORNER = 0.02  # m, within which a corner belongs to the place of contact
-PARALLEL = np.radians(20.0)  # two sides at a smaller angle meet flat; else a corner meets a side
 
 
 def contacts_of(drive: "Drive") -> tuple[Incident, ...]:
@@ -105,26 +104,16 @@ def _described(drive: "Drive", step: int, number: int, share: float) -> Incident
         other = drive.others.at(drive["time"][step])[number]
     size = np.array([[drive.car.length, drive.car.width], actor.size[:2]])
     place, heading = np.stack([car[:2], other[[X, Y]]]), np.array([car[2], other[HEADING]])
-    outlines = corners(place, heading, size)
-    inside = [
-        point
-        for mine in (0, 1)
-        for point in outlines[mine]
-        if (np.abs(turned(point - place[1 - mine], -heading[1 - mine])) <= size[1 - mine] / 2 + CORNER).all()
-    ]
-    spot = np.mean(inside, axis=0) if inside else place.mean(axis=0)
-    away = place[1] - place[0]
-    apart = separation(away, heading[0], size[0], heading[1], size[1])
-    faces = [
-        _face(n, away * (1 - 2 * n), heading, apart, turned(spot - place[n], -heading[n])) for n in (0, 1)
-    ]
+    met = touching(place, heading, size)
+    own, its_own = cast("tuple[Face, Face]", met.faces)
     speed, its = float(abs(between(drive["speed"]))), float(other[SPEED])
     velocity = turned(np.array([between(drive["vx"]), between(drive["vy"])]), heading[0])
     impact = velocity - its * np.array([np.cos(heading[1]), np.sin(heading[1])])
-    across = np.clip(turned(outlines[1] - place[0], -heading[0])[:, 1], -size[0, 1] / 2, size[0, 1] / 2)
-    is_aside = faces[0] in ("left", "right")
+    outline = corners(place[1], heading[1], size[1])
+    across = np.clip(turned(outline - place[0], -heading[0])[:, 1], -size[0, 1] / 2, size[0, 1] / 2)
+    is_aside = own in ("left", "right")
     fault = speed > STANDS and (
-        abs(its) <= STANDS or faces[0] == "front" or (is_aside and drive["outside"][step] > 0)
+        abs(its) <= STANDS or own == "front" or (is_aside and drive["outside"][step] > 0)
     )
     return Incident(
         "collision",
@@ -133,28 +122,14 @@ def _described(drive: "Drive", step: int, number: int, share: float) -> Incident
         time,
         actor.name,
         Contact(
-            xy=(float(spot[0]), float(spot[1])),
-            face=faces[0],
-            other_face=faces[1],
+            xy=(float(met.spot[0]), float(met.spot[1])),
+            face=own,
+            other_face=its_own,
+            place=met.place,
             speed=speed,
             other_speed=its,
             impact_speed=float(np.hypot(*impact)),
-            overlap=float(np.ptp(across) / drive.car.width) if faces[0] == "front" else None,
+            overlap=float(np.ptp(across) / drive.car.width) if own == "front" else None,
             nuplan_at_fault=bool(fault),
         ),
     )
-
-
-def _face(mine: int, away: Array, heading: Array, apart: Array, spot: Array) -> Face:
-    """Returns with which side box ``mine``, 0 or 1, met the other, which is ``away`` from it: that along the
-    line on which both are ``apart`` the most. A corner that meets a side is one of the front or the rear, as
-    with nuPlan; ``spot`` is where it is."""
-    flat, is_across = divmod(int(apart.argmax()), 2)
-    ahead, left = turned(away, -heading[mine])
-    turn = (heading[mine] - heading[flat] + np.pi / 4) % np.pi - np.pi / 4  # -45 to 135 degrees
-    is_crossed = turn > np.pi / 4
-    if abs(turn - is_crossed * np.pi / 2) > PARALLEL:
-        return "front" if spot[0] > 0 else "rear"
-    if is_across != is_crossed:
-        return "left" if left > 0 else "right"
-    return "front" if ahead > 0 else "rear"

@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from roadgpt.brief.scene import STRUCK
 from roadgpt.drive.drive import PEDALS, SCRIPT
 from roadgpt.drive.drive_monitor import STUCK_AMONG_OTHERS, STUCK_TIME
+from roadgpt.language.names import Face
 from roadgpt.language.table import VEHICLES
 from roadgpt.road.world import share_in_words
 from roadgpt.verdict.criteria import (
@@ -25,7 +27,6 @@ from roadgpt.verdict.verdict import (
     DEPARTURES,
     STANDS,
     Cause,
-    Face,
     Fault,
     Incident,
     Law,
@@ -105,7 +106,7 @@ def judge(
         whom = next((each.other for each in incidents if each.kind == cause), None)
         description = _failed(case, step, failed, side, contact, whom, fault)
     untold = [each for each in incidents if each is not contact or cause == "collision"]
-    description += _counted(untold, cause) + _who_drove(drive.shares, excuse)
+    description += _on_face(world, hit) + _counted(untold, cause) + _who_drove(drive.shares, excuse)
     description += "".join(f"; {each}" for each in [*filter(None, [found and found.said]), *drive.limited])
     if failed is None and drive.missed:
         from roadgpt.verdict.happened import told
@@ -201,6 +202,15 @@ def _counted(incidents: Sequence[Incident], cause: Cause | None) -> str:
         often = "once," if count == 1 else f"{count} times, first"
         words.append(f"{NAMED[str(kind)].said} {often} after {first:.0f} m")
     return "".join(f"; {each}" for each in words)
+
+
+def _on_face(world: "World", hit: Incident | None) -> str:
+    """Returns in words where the tested car was touched, if the scene tells that."""
+    found = hit and hit.contact
+    if not found or found.place is None or all(each.hits not in STRUCK for each in world.scene.actors):
+        return ""
+    of = "left" if found.face in ("front", "rear") else "front"
+    return f"; touched at {percent(found.place)} of its {FACES[found.face]} from the {of}"
 
 
 def _asks_for_emergency_braking(drive: "Drive", contact: Incident) -> bool:
@@ -303,7 +313,8 @@ def _touched(incident: Incident, where: str, fault: Fault | None) -> str:
     """Returns in words how the tested car and somebody else touched, and whose fault it was."""
     found, name = incident.contact, incident.other
     assert found is not None
-    is_hit = found.face == "rear" or (found.face != "front" and found.other_face == "front")
+    stands = found.speed <= STANDS < abs(found.other_speed)
+    is_hit = stands or found.face == "rear" or (found.face != "front" and found.other_face == "front")
     verb = f"was hit by {name}" if is_hit else f"hit {name}"
     own, other = FACES[found.face], FACES[found.other_face]
     its = f"at {abs(found.other_speed) * 3.6:.0f} km/h" if abs(found.other_speed) > STANDS else "standing"

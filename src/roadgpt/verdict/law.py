@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from roadgpt.geometry.boxes import CORNER
 from roadgpt.geometry.curve import Array
 from roadgpt.language.table import PERSONS, VEHICLES
 from roadgpt.network import legs_of, network_of, only_road
@@ -21,7 +22,6 @@ from roadgpt.network.lanes import lanes_of
 from roadgpt.network.line import Boxes, Line
 from roadgpt.network.markings import CROSSED
 from roadgpt.traffic.actor import HEADING, SPEED, STEP, STILL, X, Y
-from roadgpt.verdict.contact import CORNER
 from roadgpt.verdict.criteria import OVER, OVER_BY, STOOD, STOP_WITHIN, TOO_FAST, limits_at
 from roadgpt.verdict.measures import ACROSS, measure
 from roadgpt.verdict.right_of_way import LATER, who_drives

@@ -15,6 +15,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self, get_args
 from pydantic import AliasChoices, ConfigDict, Field, ValidationError
 
 from roadgpt.errors import UsageError
+from roadgpt.language.names import Face
 from roadgpt.reading import strictly
 
 JUDGEMENT = 2
@@ -31,7 +32,6 @@ Cause = Literal[
 DEPARTURES: tuple[Cause, ...] = ("out of lane", "fell", "rolled", "crashed", "sank")
 """The causes by which the car is beside its lane."""
 Side = Literal["left", "right"]
-Face = Literal["front", "rear", "left", "right"]
 Severity = Literal["at most 10 % outside", "partly outside", "mostly outside"]
 SEVERITIES: tuple[Severity, ...] = get_args(Severity)
 """All levels, from the best to the worst."""
@@ -70,6 +70,9 @@ class Contact:
         bool, Field(validation_alias=AliasChoices("nuplan_at_fault", "at_fault"))  # its name in version 1
     ]
     """Whether it is the tested car's fault by nuPlan, as ``roadgpt.verdict.contact`` defines it."""
+    place: float | None = None
+    """Where on ``face`` the middle of the touch was, as a share: of front and rear from the left, of the
+    sides from the front; None in older records."""
 
 
 @dataclass(frozen=True)

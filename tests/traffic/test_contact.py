@@ -1,0 +1,173 @@
+"""Who is to hit the tested car, or another one, hits it where the scene tells.
+
+Times and places of touches are those of polygons (shapely) that move between the recorded samples; a referee
+of exported scenes judges the same where it is at hand."""
+
+import json
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapely
+
+from boxed import corners
+from outside_judge import traffic_referee
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.drive import Drive
+from roadgpt.errors import BriefError
+from roadgpt.run import Run, Setup, perform
+from roadgpt.run.exporting import export
+from roadgpt.traffic.actor import Tracks
+
+STEP = 0.005  # s
+NEAR = 0.02  # m, of a corner that touches
+
+
+@cache
+def run_of(words: str, driver: str = "robot") -> Run:
+    return perform(words, seed=3, setup=Setup(driver=driver, reader="plan"))
+
+
+def parts(words: str, driver: str = "robot") -> tuple[Run, Drive, Tracks]:
+    run = run_of(words, driver)
+    assert run.drive is not None, run.description
+    assert run.drive.others is not None
+    return run, run.drive, run.drive.others
+
+
+def box(state: np.ndarray, size: tuple[float, float]) -> shapely.Polygon:
+    return shapely.Polygon(corners(state, size))
+
+
+def own_box(drive: Drive, time: float) -> tuple[np.ndarray, shapely.Polygon]:
+    x, y, heading = (float(np.interp(time, drive["time"], each)) for each in drive.middles.T)
+    state = np.array([x, y, 0.0, heading])
+    return state, box(state, drive.car[:2])
+
+
+def touched(drive: Drive, others: Tracks, name: str) -> tuple[float, str, float]:
+    """When somebody first touches the tested car, on which of its faces, and where along that: from the left
+    of front and rear, from the front of the sides."""
+    number = [each.name for each in others.actors].index(name)
+    size = others.actors[number].size[:2]
+    far = np.hypot(*(others.at(drive["time"])[:, number, :2] - drive.middles[:, :2]).T)
+
+    def boxes(time: float) -> tuple[shapely.Polygon, shapely.Polygon]:
+        return own_box(drive, time)[1], box(others.at(time)[number], size)
+
+    times = np.arange(drive["time"][np.nanargmax(far < 12.0)], drive.duration, STEP)
+    time = next(float(each) for each in times if shapely.intersects(*boxes(each)))
+    before = time - STEP
+    for _ in range(12):
+        middle = (before + time) / 2
+        before, time = (before, middle) if shapely.intersects(*boxes(middle)) else (middle, time)
+    state, pair = own_box(drive, time)[0], boxes(time)
+    points = [shapely.Point(each) for one in pair for each in one.exterior.coords[:4]]
+    near = [each for each in points if max(each.distance(one) for one in pair) < NEAR]
+    spot = np.mean([[each.x, each.y] for each in near], axis=0) - state[:2]
+    turn = np.exp(-1j * state[3]) * complex(*spot)
+    length, width = drive.car[:2]
+    depths = {
+        "front": length / 2 - turn.real, "rear": length / 2 + turn.real,
+        "left": width / 2 - turn.imag, "right": width / 2 + turn.imag,
+    }  # fmt: skip
+    face = min(depths, key=lambda each: depths[each])
+    along = 0.5 - (turn.imag / width if face in ("front", "rear") else turn.real / length)
+    return float(time), face, along
+
+
+TWO_LANES, BOTH_WAYS = "straight 400 | lanes=2 && ", "straight 400 | lanes=1 against=1 && "
+TOLD = {
+    # it stops, and is hit from behind
+    "straight 400 && ego v=50: stop s=150, wait 5; car behind v=50 hits=rear impact=30": ("rear", 0.7),
+    "straight 400 && ego v=50: brake 6 time=5, wait 9; truck behind v=50 hits=rear": ("rear", 0.5),
+    "straight 400 && ego v=40; motorcycle behind v=70 hits=rear impact=80": ("rear", 0.2),
+    # it stands, or drives, and a mirror is scraped
+    "straight 400 && ego v=0: wait 20; truck lane left v=50 hits=mirror": ("left", 0.35),
+    f"{BOTH_WAYS}ego v=50; truck oncoming v=50 hits=mirror": ("left", 0.35),
+    f"{TWO_LANES}ego v=60 lane=2; van lane right v=70 hits=mirror": ("right", 0.35),
+    # somebody cuts in too early
+    f"{TWO_LANES}ego v=50; van lane left v=50 hits=left impact=5: cut_in": ("left", 0.05),
+    f"{TWO_LANES}ego v=50; van lane left v=40 hits=front impact=20: cut_in": ("front", 0.2),
+    # head on, and what lies on the road
+    f"{BOTH_WAYS}ego v=50; car oncoming v=50 hits=front impact=20: drift": ("front", 0.8),
+    "straight 400 && ego v=50; cones ahead hits=front impact=10": ("front", 0.9),
+    "straight 400 && ego v=50; car ahead v=0 hits=front impact=75": ("front", 0.25),
+    # from the side
+    "straight 300 && ego v=30; car parked right hits=right impact=30: pull_out to=30": ("right", 0.3),
+    "crossroads straight && ego v=40; car junction left v=40 hits=left impact=70: cross": ("left", 0.7),
+}
+
+
+@pytest.mark.parametrize("words", TOLD)
+def test_somebody_hits_the_told_place_of_a_car_that_does_not_react(words: str) -> None:
+    face, share = TOLD[words]
+    run, drive, others = parts(words)
+    assert run.verdict is not None
+    hit = next(each for each in run.verdict.incidents or () if each.contact)
+    time, its_face, along = touched(drive, others, str(hit.other))
+    assert hit.contact is not None
+    assert hit.contact.place is not None
+    assert (its_face, hit.contact.face) == (face, face), run.description
+    assert along == pytest.approx(share, abs=0.05)
+    assert hit.contact.place == pytest.approx(along, abs=0.02)
+    assert hit.at_time == pytest.approx(time, abs=0.02)
+
+
+@pytest.mark.parametrize("words", [*TOLD][:3] + [*TOLD][6:9])
+def test_a_referee_of_exported_scenes_sees_the_same(words: str, tmp_path: Path) -> None:
+    referee, face = traffic_referee(), TOLD[words][0]
+    export(run_of(words), tmp_path, ["opendrive", "openscenario"], print)
+    told = {"outcome": {"collision": True, "hit": "side" if face in ("left", "right") else face}}
+    holds, measured = referee.check(str(tmp_path / "road.drive.xosc"), told)
+    assert all(holds.values()), json.dumps(referee.plain(measured["outcome"]))
+
+
+def test_a_driver_that_reacts_is_not_hit_where_it_can_avoid_that() -> None:
+    words = f"{TWO_LANES}ego v=50; van lane left v=40 hits=front impact=20: cut_in"
+    run, drive, others = parts(words, "lane_centring")
+    assert run.outcome == "PASS", run.description
+    size = others.actors[0].size[:2]
+    for time in np.arange(0.0, drive.duration, 0.05):
+        if np.isfinite(others.at(time)[0, 0]):
+            assert not own_box(drive, time)[1].intersects(box(others.at(time)[0], size))
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("straight 300 && ego v=50; car behind v=40 hits=rear", ["car 1", "rear", "never touch"]),
+        (
+            f"{TWO_LANES}ego v=50; van lane left v=50 lead=2 hits=left impact=60: cut_in",
+            ["van 1", "left", "%"],
+        ),
+    ],
+)
+def test_a_hit_that_cannot_be_is_refused_in_one_sentence(words: str, said: list[str]) -> None:
+    run = run_of(words)
+    assert run.outcome == "INVALID"
+    assert run.description.startswith("refused: ")
+    assert all(each in run.description for each in said), run.description
+
+
+@pytest.mark.parametrize(
+    ("scene", "said"),
+    [
+        ("car behind hits=mirror impact=30", "mirror"),
+        ("car behind hits=rear impact=130", "rear"),
+        ("car behind hits=van 1", "van 1"),
+        ("car behind hits=roof", "roof"),
+        ("car x2 behind hits=rear", "one hits"),
+        ("car ahead; car behind hits=car 2", "name another"),
+    ],
+)
+def test_what_cannot_be_hit_is_named(scene: str, said: str) -> None:
+    with pytest.raises(BriefError, match=said):
+        read_plan(f"straight && {scene}")
+
+
+def test_plans_hold_who_hits_whom() -> None:
+    for words in ("van ahead; car lane left hits=van 1: cut_in", "car behind impact=30 hits=rear"):
+        read = read_plan(f"straight && {words}")
+        assert read_plan(plan(read)).scene == read.scene
