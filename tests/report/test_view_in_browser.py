@@ -13,6 +13,7 @@ from matplotlib.colors import to_rgb
 import staged
 from chromium import FOUND, BrowserTab, browser
 from road_parts import design_of
+from roadgpt.brief.scene import Event
 from roadgpt.report import view
 from roadgpt.report.canvas import SEVERE
 from roadgpt.road import CrossSection, Design, Road, Site, World
@@ -461,6 +462,8 @@ def test_the_time_line_and_the_contact(tab: BrowserTab, tmp_path: Path) -> None:
         request=request, index=1, seed=1, road=road, drive=drive, verdict=verdict, outcome=verdict.outcome,
         description=verdict.description,
     )  # fmt: skip
+    events = (Event("van 1", "brakes with 2 m/s2", 1.0, 39.0, 6.0), Event("bus 1", "stops", why="<i>late"))
+    run = replace(run, verdict=replace(verdict, events=(*events[:1], *(verdict.events or ()), *events[1:])))
     path = view.write([run], tmp_path / "contact.html")
     tab.size(820, 580)
     tab.open(path)
@@ -481,6 +484,16 @@ def test_the_time_line_and_the_contact(tab: BrowserTab, tmp_path: Path) -> None:
     told = "JSON.parse(document.getElementById('data').textContent)[0].others.near"
     assert tab.run(f"{told}.ttc[30]") == pytest.approx(5 / 4, abs=0.01)
     assert tab.run(f"{told}.conflict[30]") == pytest.approx(5 / 4, abs=0.01)
+    rows = tab.run("[...document.querySelectorAll('.events li')].map((row) => row.textContent)")
+    assert rows[0] == "1.0 s39 mvan 1: brakes with 2 m/s2, until 6.0 s"
+    assert rows[-1] == "neverbus 1: stops: <i>late"
+    tab.run("document.querySelector('.events button').click()")
+    tab.settle()
+    assert tab.run("roadgpt.player.time") == pytest.approx(1.0)
+    hud = {each: f"document.querySelector('.hud .{each}').textContent" for each in ("event", "other")}
+    assert tab.run(hud["event"]) == "van 1: brakes with 2 m/s2"
+    slide(tab, 3.0)
+    assert tab.run(hud["other"]) == "gap 5.0 m to van 1, 22 km/h"  # 10 - 2 * 2 m/s
     wide = tab.run("document.querySelector('.near canvas').clientWidth")
     x, y = middle_of(tab, ".near canvas", (34 + (wide - 46) / 2) / wide)
     tab.click(x, y)

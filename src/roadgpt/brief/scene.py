@@ -5,6 +5,7 @@ another, each begun by a condition. A number may be a range, from which each dri
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal, Self, get_args
 
 from pydantic import AfterValidator, StringConstraints, model_validator
@@ -55,6 +56,8 @@ AROUND: tuple[What, ...] = ("overtake", "pass")
 """What leads the tested car around somebody."""
 MOST_MORE = 3
 """How many more of a kind there are at most where a scene says "2 or more"."""
+CAR, SIGNALS = "tested car", "lights"
+"""Whose events are not those of an actor."""
 LANES_AWAY = {"lane": 1, "far": 2}
 MIRROR = "mirror"
 STRUCK: tuple[str, ...] = (*get_args(Face), MIRROR)
@@ -527,6 +530,25 @@ class Scene(Frozen):
         amounts = {each.kind: each.amount for each in self.weather} | {kind: amount}
         air = tuple(Air(kind=each, amount=found) for each in WEATHER if (found := amounts.get(each)))
         return self.model_copy(update={"weather": air})
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that a scene prescribes, or that happened to the tested car."""
+
+    who: str
+    """Whose it is: the name of an actor, CAR or SIGNALS."""
+    what: str
+    """In words, such as "brakes with 6 m/s2 at a gap of 20 metres", with the numbers that were drawn."""
+    time: float | None = None
+    """When it began, in seconds since the start of the drive; None if it never happened."""
+    s: float | None = None
+    """The station along the tested car's road in metres where whoever did it was then; None if it was not
+    there yet, and for lights."""
+    until: float | None = None
+    """When it had ended, in seconds; None if that was not seen."""
+    why: str = ""
+    """Why it never happened, or what ended it before its time."""
 
 
 def _counted(roles: Sequence[Role]) -> Iterator[tuple[int, Role]]:

@@ -20,6 +20,7 @@ from roadgpt.cli.streams import apart, is_coloured, progress, shown
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from roadgpt.brief.scene import Event
     from roadgpt.campaign.columns import ToldNumber
     from roadgpt.campaign.gate import Gate
     from roadgpt.campaign.model import Result
@@ -84,6 +85,7 @@ class Row:
     scenario: str = ""
     parameters: str = ""  # of the scenario, where they are not the nominal ones
     numbers: "tuple[ToldNumber, ...]" = ()  # those of the plug-ins ``columns`` that are told
+    events: "tuple[Event, ...]" = ()  # what happened in a test among others, and what did not
     at_fault: bool | None = None  # whether the first collision was the car's fault; None without one
     seconds: float = 0.0
     name: str = ""  # a shorter name, which is printed instead of ``file``; if empty, ``file`` is printed
@@ -132,6 +134,7 @@ class Row:
         if self.spent is not None:
             told |= {"tokens": self.spent.usage.total, "model_seconds": _rounded(self.spent.seconds)}
             told["cost_usd"] = self.spent.cost
+        told |= {"events": [vars(each) for each in self.events]} if self.events else {}
         if self.at_fault is not None:
             told["at_fault"] = self.at_fault
         told |= {name: found for name in ("scenario", "parameters") if (found := getattr(self, name))}
@@ -225,6 +228,7 @@ def row_of(run: "Run | Result", file: str = "", **more: Any) -> Row:
         findings = tuple(finding.sentence for finding in run.findings)
         more |= {"validation_message": run.validation_message, "findings": findings, "spent": run.spent}
         test = run.request.setup.scenario
+        more["events"] = (run.verdict and run.verdict.events) or ()
         more |= {"words": run.words, "seed": run.seed, "trace": run.trace}
         # as tables of tests hold them
         more["seconds"] = round(run.seconds.design, 4) + round(run.seconds.drive, 4)

@@ -10,6 +10,7 @@ import click
 import numpy as np
 
 from roadgpt import plugins
+from roadgpt.brief.scene import Event
 from roadgpt.campaign.csv_tables import RESULTS
 from roadgpt.campaign.folder_record import open_record
 from roadgpt.campaign.gate import Gate
@@ -242,6 +243,8 @@ def _run_lines(run: Run, again: Sequence[str]) -> Iterator[str]:
         if row.test:
             yield f"  scenario  {row.test}"
         yield from (f"  {part:<8}  {text}" for part, text in row.told_numbers.items())
+        for number, event in enumerate(verdict.events or ()):
+            yield f"  {'events' if number == 0 else '':<8}  {_event_line(event)}"
         if verdict.law is not None:
             other = next(str(each.other) for each in verdict.incidents or () if each.contact)
             told = verdict.law.said(other) or "nobody's offence"
@@ -259,6 +262,15 @@ def _run_lines(run: Run, again: Sequence[str]) -> Iterator[str]:
         yield f"  took      {run.seconds.design * 1000:.1f} ms to design, {run.seconds.drive:.2f} s to drive"
     for number, line in enumerate(again):
         yield f"  {'again' if number == 0 else 'or':<8}  {line}"
+
+
+def _event_line(event: Event) -> str:
+    """Returns when and where something happened, and what it was."""
+    when = "never" if event.time is None else f"{event.time:.1f} s"
+    where = "" if event.s is None else f"{event.s:.0f} m"
+    until = "" if event.until is None else f", until {event.until:.1f} s"
+    why = f": {event.why}" if event.why else ""
+    return f"{when:>7} {where:>7}  {event.who}: {event.what}{until}{why}"
 
 
 def _road_line(run: Run) -> str:

@@ -170,7 +170,8 @@ def simulate(
     if traffic is None:
         return drive
     missed, limited = (*drive.missed, *traffic.missed), (*drive.limited, *traffic.limited)
-    return replace(drive, missed=missed, limited=limited, stopped=traffic.stopped)
+    history = (*drive.history, *traffic.history)
+    return replace(drive, missed=missed, limited=limited, stopped=traffic.stopped, history=history)
 
 
 def _aims(road: "Road", world: "World", seed: int) -> "Mapping[int, Aiming | None]":

@@ -18,6 +18,7 @@ from roadgpt.reading import arrays_in, json_of, strictly
 if TYPE_CHECKING:
     from pandas import DataFrame
 
+    from roadgpt.brief.scene import Event
     from roadgpt.road import Road, World
     from roadgpt.traffic import Tracks
 
@@ -172,6 +173,9 @@ class Drive:
     unheeded: FloatArray | None = None
     """What the driver commanded while the script had the wheel or the pedals: steer, throttle and brake,
     shape (n - 1, 3), NaN elsewhere; None if the script had neither."""
+    history: "tuple[Event, ...]" = ()
+    """What the scene prescribes of its actors and of the tested car, each with whether, when and where it
+    happened; empty in drives of older versions."""
 
     def __repr__(self) -> str:
         way = f"{self['s'][-1]:.1f} m in {self.duration:.2f} s, {len(self)} steps"
@@ -316,6 +320,7 @@ def packed(drive: Drive) -> tuple[dict[str, Any], NDArray[np.float64] | None]:
     header: dict[str, Any] = {name: getattr(drive, name) for name in ("driver", "simulator", "seed", "ended")}
     header["car"] = drive.car._asdict()
     header |= {name: found for name in RARE if (found := getattr(drive, name))}
+    header |= {"history": [vars(each) for each in drive.history]} if drive.history else {}
     if drive.others is None:
         return header, None
     header[OTHERS] = [[each.name, each.kind, each.size] for each in drive.others.actors]
@@ -341,7 +346,14 @@ def unpacked(header: Any, columns: Columns, states: NDArray[Any] | None) -> Driv
         missed=missed,
         limited=limited,
         stopped=stopped,
+        history=_history(header["history"]) if "history" in header else (),
     )
+
+
+def _history(events: Any) -> "tuple[Event, ...]":
+    from roadgpt.brief.scene import Event
+
+    return strictly(tuple[Event, ...], events)
 
 
 def _tracks(actors: Any, states: NDArray[Any], duration: float) -> "Tracks":

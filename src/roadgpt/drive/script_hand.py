@@ -19,11 +19,12 @@ keep to moves: the driver is started again for a road whose driven lane is the n
 the pedals as its new way needs, and goes on there."""
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roadgpt.brief.scene import AROUND
+from roadgpt.brief.scene import AROUND, CAR, Event
 from roadgpt.drive.drive import PEDALS, SCRIPT, Box, LaneMove
 from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.driving_line import BEFORE_LINE, pedals_for
@@ -39,7 +40,7 @@ from roadgpt.traffic.lateral import Lateral, Offsets
 from roadgpt.traffic.longitudinal import Longitudinal
 from roadgpt.traffic.maneuver import CHANGE, FAST, LATERAL, STOP, Maneuver, Phase, drawn
 from roadgpt.traffic.places import SIGN, offset_of, stretch_of
-from roadgpt.traffic.traffic import NEVER, Stage
+from roadgpt.traffic.traffic import ENDED, NEVER, Stage
 from roadgpt.traffic.triggers import Triggers
 
 if TYPE_CHECKING:
@@ -99,6 +100,8 @@ class ScriptHand:
         """For how many seconds the driver has braked firmly."""
         self._stands = world.scene.speed is not None and world.first_speed == 0
         self._said, self._skipped = list[str](), list[str]()
+        self._did_it = dict[int, Event]()
+        """The events of maneuvers that have begun, or never will."""
         self._around = ""
         """Who is overtaken or passed."""
 
@@ -210,6 +213,9 @@ class ScriptHand:
     def _give_up(self, when: str, view: View) -> None:
         by = f"its driver braked with more than {FIRM:g} m/s2 at {view.time:.1f} s"
         self._said.append(f"the script gave up {when}: {by}")
+        number = self._begun - 1
+        event = self._did_it.get(number) or Event(CAR, self._maneuvers[number].said)
+        self._did_it[number] = replace(event, until=event.time and view.time, why=f"given up: {by}")
 
     @property
     def _hands(self) -> str:
@@ -257,7 +263,8 @@ class ScriptHand:
             elif number in self._places:
                 left = self._places[number] - self._front
                 if left < 0:
-                    self._skipped.append(f"{NEVER} {self._did(number)}: it had passed the place before")
+                    self._did_it[number] = Event(CAR, each.said, why="it had passed the place before")
+                    self._skipped.append(f"{NEVER} {self._did(number)}: {self._did_it[number].why}")
                     self._begun, self._phases = number + 1, []
                     continue
                 wait = 0.0 if self._speed.v**2 / 2 / max(left, NEAREST) >= self._decel(each) else math.inf
@@ -286,6 +293,9 @@ class ScriptHand:
                 self._enter(view)
 
     def _tell(self, word: str, maneuver: Maneuver, view: View) -> None:
+        number = self._maneuvers.index(maneuver)
+        event = self._did_it.get(number) or Event(CAR, maneuver.said, view.time, view.s)
+        self._did_it[number] = event if word == "with" else replace(event, until=view.time)
         if self._traffic is not None:
             self._traffic.tell((word, "ego", "1", maneuver.what), view.time)
 
@@ -470,12 +480,23 @@ class ScriptHand:
         if self._around and self._phases:
             found.append(f"{NEVER} {self._did(self._begun - 1)}: it had not come past")
         if self._begun < len(self._maneuvers):
-            each = self._maneuvers[self._begun]
-            comes = each.is_open or bool({"time", "station"} & {*each.n})
-            has_come = comes or self._begun in (*self._places, *self._ends)
-            why = "the drive ended before" if has_come else "what it waits for did not come"
-            found.append(f"{NEVER} {self._did(self._begun)}: {why}")
+            found.append(f"{NEVER} {self._did(self._begun)}: {self._why(self._begun)}")
         return tuple(found)
+
+    def _why(self, number: int) -> str:
+        """Returns why a maneuver has not begun."""
+        each = self._maneuvers[number]
+        if number > self._begun:
+            return "what it does before that never began"
+        comes = each.is_open or bool({"time", "station"} & {*each.n})
+        has_come = comes or number in (*self._places, *self._ends)
+        return ENDED if has_come else "what it waits for did not come"
+
+    @property
+    def history(self) -> tuple[Event, ...]:
+        """What the scene makes the car do, each with whether it has happened so far."""
+        every = enumerate(self._maneuvers)
+        return tuple(self._did_it.get(n) or Event(CAR, each.said, why=self._why(n)) for n, each in every)
 
     @property
     def limited(self) -> tuple[str, ...]:

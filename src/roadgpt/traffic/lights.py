@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roadgpt.brief.amount import exactly
-from roadgpt.brief.scene import Role
+from roadgpt.brief.scene import Role, Signal
 from roadgpt.geometry import wrap_angle
 from roadgpt.language.names import Shown
 from roadgpt.network import network_of
@@ -125,10 +125,15 @@ def lights_of(road: "Road", world: "World", seed: int) -> Lights:
             lights.show_green(passage.entered, end, passage.start / speed)
     lit = next((each for each in road.passages if each.control == "lights"), None)
     if signal is not None and lit is not None:
-        rng = np.random.default_rng([seed, *OF_SIGNAL])
         comes = (lit.start - min(START, road.length / 2)) / speed
-        if signal.time is None:
+        turns = turns_at(signal, seed)
+        if turns is None:
             lights.show(lit.entered, lit.arrival, comes, WHEN_IT_COMES[signal.shows])
         else:
-            lights.show(lit.entered, lit.arrival, drawn(signal, rng)["time"], BEGINS[signal.shows])
+            lights.show(lit.entered, lit.arrival, turns, BEGINS[signal.shows])
     return lights
+
+
+def turns_at(signal: Signal, seed: int) -> float | None:
+    """Returns from when on, in seconds, the lights show what is told; None: when the tested car comes."""
+    return drawn(signal, np.random.default_rng([seed, *OF_SIGNAL])).get("time")

@@ -7,6 +7,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from roadgpt.brief.amount import exactly
 from roadgpt.brief.scene import Action, Role, Scene, Signal
 from roadgpt.language.names import ActorKind, What
 from roadgpt.language.table import CUES, MANEUVERS, NUMBERS, ROAD_USERS
@@ -53,6 +54,16 @@ class Maneuver:
         """What somebody else does, on which it begins."""
         mark = self.action.at
         return (mark.word, mark.of, str(mark.number), mark.what) if mark and mark.what else None
+
+    @property
+    def said(self) -> str:
+        """What is done, in words, with the numbers that were drawn."""
+        drawn = {
+            field: exactly(round(self.n[field] / SCALES.get(field, 1.0), 1))
+            for field in {*NUMBERS} & {*self.n}
+            if (asked := getattr(self.action, field, None)) and not asked.exact
+        }
+        return str(self.action.model_copy(update=drawn))
 
     @property
     def is_open(self) -> bool:

@@ -34,6 +34,10 @@ class Performer:
         """Whether it hit the tested car from behind when it first touched it; None if it has not."""
         self.begun, self.shown = 0, set[int]()
         """How many maneuvers have begun, and the numbers of those that it did while it was there."""
+        self.since: dict[int, tuple[float, tuple[float, ...] | None]] = {}
+        """When each maneuver began, and its state then."""
+        self.until: dict[int, float] = {}
+        """When each maneuver had ended."""
         self.phases: list[Phase] = []
         self.clock = 0.0
         """The rest of the maneuver that it does, and for how long the first of these phases has lasted."""
@@ -142,8 +146,15 @@ class Performer:
         self.shown.add(self.begun - 1)
 
     def _tell(self, word: str) -> None:
+        number, time = self.begun - 1, self.triggers.time
+        if word == "with":
+            self.since[number] = time, self.state()
+            if number:
+                self.until.setdefault(number - 1, time)
+        else:
+            self.until.setdefault(number, time)
         if self.name:
-            self.triggers.events[word, *self.name, self.maneuvers[self.begun - 1].what] = self.triggers.time
+            self.triggers.events[word, *self.name, self.maneuvers[number].what] = time
 
     def _enter(self) -> None:
         """Begins the phase that is next."""

@@ -6,7 +6,7 @@ from collections import Counter
 
 import numpy as np
 
-from roadgpt.brief.scene import HEAD_ON, LEAVES, MOST_MORE
+from roadgpt.brief.scene import HEAD_ON, LEAVES, MOST_MORE, Event
 from roadgpt.geometry.boxes import corners, touch
 from roadgpt.language.table import MANEUVERS
 from roadgpt.network.line import SPACING, driven_line
@@ -17,7 +17,7 @@ from roadgpt.traffic.following import ALONG
 from roadgpt.traffic.performer import Performer
 from roadgpt.traffic.places import parked_rows
 from roadgpt.traffic.placing import BEHIND, INTO, ONCOMING, STANDS, Placing
-from roadgpt.traffic.traffic import LATE, NEVER, Stage
+from roadgpt.traffic.traffic import ENDED, LATE, NEVER, Stage
 
 UNCOVERED = 3.0  # s that who changes lanes has left before who stands behind it is reached
 IN_SIGHT = 150.0  # m ahead, in which somebody sees others in its lane
@@ -203,18 +203,38 @@ class Script:
         found = []
         for actor, each in zip(self.actors, self._performers, strict=False):
             number = next((n for n in range(len(each.maneuvers)) if n not in each.shown), None)
-            if number is None:
-                continue
-            why, maneuver, course = "the drive ended before", each.maneuvers[number], each.course
-            if number < each.begun and course.meeting and each.triggers.met.s > course.meeting.its:
-                why = LATE
-            elif each.state() is None:
-                is_gone = course.forward * (course.s - course.way.length / 2) > 0
-                why = "it had left the road" if is_gone else "it was not on the road yet"
-            elif not maneuver.is_open and each.triggers.wait(maneuver) == math.inf:
-                why = "what it waits for did not come"
-            found.append(f"{NEVER} {_did(actor, each, number)}: {why}")
+            if number is not None:
+                found.append(f"{NEVER} {_did(actor, each, number)}: {_why(each, number)}")
         return tuple(found)
+
+    @property
+    def history(self) -> tuple[Event, ...]:
+        """See ``Traffic.history``."""
+        found = list[Event]()
+        for actor, each in zip(self.actors, self._performers, strict=False):
+            for n, maneuver in enumerate(each.maneuvers):
+                if n not in each.shown:
+                    found.append(Event(actor.name, maneuver.said, why=_why(each, n)))
+                    continue
+                time, state = each.since[n]
+                s = None if state is None else self._way.to_road(float(self._way.locate(*state[:2])[0]))
+                found.append(Event(actor.name, maneuver.said, time, s, each.until.get(n)))
+        return tuple(found)
+
+
+def _why(who: Performer, number: int) -> str:
+    """Returns why somebody has not done one of its maneuvers."""
+    maneuver, course = who.maneuvers[number], who.course
+    if number > who.begun:
+        return "what it does before that never began"
+    if number < who.begun and course.meeting and who.triggers.met.s > course.meeting.its:
+        return LATE
+    if who.state() is None:
+        is_gone = course.forward * (course.s - course.way.length / 2) > 0
+        return "it had left the road" if is_gone else "it was not on the road yet"
+    if not maneuver.is_open and who.triggers.wait(maneuver) == math.inf:
+        return "what it waits for did not come"
+    return ENDED
 
 
 def _did(actor: Actor, who: Performer, number: int) -> str:

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
+from roadgpt.brief.scene import Event
 from roadgpt.traffic.actor import STEP, TESTED, Actor, FloatArray, TestedCar, Tracks, rounded
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
     from roadgpt.traffic.lights import Lights
 
-NEVER, LATE = "it never happened that", "the tested car had passed before"
+NEVER, LATE, ENDED = "it never happened that", "the tested car had passed before", "the drive ended before"
 
 
 class Stage(NamedTuple):
@@ -161,6 +162,11 @@ class Traffic:
     def missed(self) -> tuple[str, ...]:
         """What of the scene has not happened so far, in sentences."""
         return tuple(each for mover, _ in self._movers for each in getattr(mover, "missed", ()))
+
+    @property
+    def history(self) -> tuple[Event, ...]:
+        """What the scene prescribes of its actors, each with whether it has happened so far."""
+        return tuple(each for mover, _ in self._movers for each in getattr(mover, "history", ()))
 
     @property
     def stopped(self) -> tuple[str, ...]:

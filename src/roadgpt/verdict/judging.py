@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from roadgpt.brief.scene import STRUCK
+from roadgpt.brief.scene import STRUCK, Event
 from roadgpt.drive.drive import PEDALS, SCRIPT
 from roadgpt.drive.drive_monitor import STUCK_AMONG_OTHERS, STUCK_TIME
 from roadgpt.language.names import Face
@@ -134,6 +134,7 @@ def judge(
         at_time=time if failed else None,
         side=side,
         incidents=incidents if case.is_route or drive.others is not None else None,
+        events=_events(case, incidents),
         least_gap=gap,
         least_ttc=ttc,
         own_share=drive.shares.get(drive.driver),
@@ -144,6 +145,14 @@ def judge(
         criterion=found and found.criterion,
         handed_to=handed_to,
     )
+
+
+def _events(case: Judged, incidents: Sequence[Incident]) -> tuple[Event, ...] | None:
+    if case.drive.others is None and not case.drive.handovers:
+        return None
+    from roadgpt.verdict.events import events_of
+
+    return events_of(case, incidents) or None
 
 
 def _blame(

@@ -14,6 +14,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self, get_args
 
 from pydantic import AliasChoices, ConfigDict, Field, ValidationError
 
+from roadgpt.brief.scene import Event
 from roadgpt.errors import UsageError
 from roadgpt.language.names import Face
 from roadgpt.reading import strictly
@@ -146,6 +147,10 @@ class Verdict:
     incidents: tuple[Incident, ...] | None = None
     """What the car did wrong on a route through junctions or with others on the road, in order of time; None
     on a single road without others. A tyre off the road, for one, fails no test."""
+    events: tuple[Event, ...] | None = None
+    """What happened, in order of time, and then what the scene prescribes that did not: its actions and
+    lights, contacts and other incidents, where the car was out of its lane, and who had the wheel. None if
+    there are none, and of drives without others and handovers."""
     least_gap: float | None = None
     """The least distance in metres, up to the first contact, from bumper to bumper to somebody ahead in the
     same lane; 0 at a collision, None if nobody ever was ahead in the same lane."""
@@ -214,7 +219,7 @@ class Verdict:
         The fields from ``incidents`` on, and ``other`` and ``contact`` of incidents, are left out where they
         are None."""
         names = [each.name for each in fields(self)]
-        optional = {*names[names.index("incidents") :], "other", "contact"}
+        optional = {*names[names.index("incidents") :], "other", "contact", "until"}
 
         def told(part: object) -> dict[str, Any]:
             return {key: each for key, each in vars(part).items() if each is not None or key not in optional}

@@ -43,7 +43,7 @@ WHY_NONE = (
     "there are no films, because the library for them is not installed; raters see plots and the 3-D view. "
     "To add films, install the extra 'film' and make the survey again"
 )
-HIDDEN = {"outcome": "", "description": "", "about": "", "words": "", "places": []}
+HIDDEN = {"outcome": "", "description": "", "about": "", "words": "", "places": [], "events": []}
 """Replacements for what a 3-D view shows to users but must not show to raters."""
 Tell = Callable[[str], None]
 PLACES = ("top", "bottom")

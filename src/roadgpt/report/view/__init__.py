@@ -194,6 +194,7 @@ def scene(run: Run) -> dict[str, Any]:
         "drive": _drive(run),
         **_others(run),
         "places": _places(run),
+        "events": [vars(each) for each in (run.verdict and run.verdict.events) or ()],
         **more,
     }
 
@@ -286,7 +287,8 @@ def _others(run: Run) -> dict[str, Any]:
 
 def _closest(run: Run) -> dict[str, Any]:
     """Returns the smallest conflict time with anybody at each sample, and who it is; the smallest time to
-    collision; and where the tested car touched somebody."""
+    collision; the gap to who is ahead in the lane, or else the distance to who is nearest, who it is, and
+    which of both; and where the tested car touched somebody."""
     assert run.road is not None
     assert run.drive is not None
     assert run.drive.others is not None
@@ -304,6 +306,10 @@ def _closest(run: Run) -> dict[str, Any]:
             place = zip("xyz", rounded(np.array([*each.contact.xy, z]), CENTIMETRES), strict=True)
             contacts.append({**dict(place), "time": round(each.at_time, MILLIMETRES)})
     told |= {"who": measured.conflict.argmin(axis=1).tolist(), "critical": CRITICAL}
+    is_ahead = np.asarray(np.isfinite(measured.gap).any(axis=1))
+    away = np.where(is_ahead.reshape(-1, 1), measured.gap, measured.distance)
+    told |= {"whom": away.argmin(axis=1).tolist(), "isAhead": is_ahead.tolist()}
+    told["away"] = [round(m, 1) if np.isfinite(m) else None for m in away.min(axis=1).tolist()]
     return {"near": told, "contacts": contacts}
 
 

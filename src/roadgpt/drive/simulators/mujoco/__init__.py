@@ -4,6 +4,7 @@ The car can be changed: ``MujocoSimulator(replace(ETK_LIKE, max_drive_accelerati
 weaker acceleration."""
 
 import math
+from dataclasses import replace
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
@@ -136,7 +137,8 @@ class MujocoSimulator:
         others = None if traffic is None else traffic.tracks()
         has_lights = company is not None and company.has_lights
         handovers = tuple(guard.handovers)
-        told = () if script is None else (script.missed, script.limited, (), script.moves, guard.unheeded)
-        return Drive(
-            guard.name, "mujoco", seed, columns, ended, self.car.box, handovers, others, has_lights, *told
-        )
+        drive = Drive(guard.name, "mujoco", seed, columns, ended, self.car.box, handovers, others, has_lights)
+        if script is None:
+            return drive
+        said = {name: getattr(script, name) for name in ("missed", "limited", "moves", "history")}
+        return replace(drive, **said, unheeded=guard.unheeded)

@@ -67,7 +67,10 @@ const player = {
 await Promise.all(Object.values(PICTURES).map((picture) => picture.decode()));
 const panels = scenes.map((scene) => makePanel(scene, fastest, player));
 player.duration = Math.max(...panels.map(({ trip }) => trip.duration));
-player.marks = scenes.flatMap(({ places }) => places).filter(({ time, text }) => text && time !== null).sort((a, b) => a.time - b.time);
+player.marks = scenes.flatMap(({ places, events }) => [
+  ...events.filter(({ time }) => time !== null).map(({ time }) => ({ time, colour: "var(--soft)" })),
+  ...places.filter(({ time, text }) => text && time !== null),
+]).sort((a, b) => a.time - b.time);
 player.contacts = scenes.flatMap(({ others }) => (others ? others.contacts : [])).map(({ time }) => time).sort((a, b) => a - b);
 document.body.classList.toggle("has-contact", player.contacts.length > 0);
 ["partly", "mostly", "failed"].forEach((name, n) => document.body.style.setProperty(`--${name}`, [...scenes[0].severe.colours, scenes[0].severe.failed][n]));

@@ -5,7 +5,7 @@ function makePanel(scene, fastest, { moveTo, wentFree, hasLine }) {
   const find = (name) => section.querySelector(name);
   const trip = tripOf(scene);
   document.getElementById("panels").append(section);
-  write(find, scene, trip, fastest);
+  write(find, scene, trip, fastest, moveTo);
 
   const stage = stageIn(section, scene, trip, fastest);
   const cameras = stage && makeCameras(stage, trip, (isDragged) => {
@@ -66,8 +66,37 @@ function drawsSolids() {
   return Boolean(context);
 }
 
+// An event as a row of the list: when, where, what; a press goes there.
+function listed({ who, what, time, s, until, why }, moveTo) {
+  const row = document.createElement("li");
+  const when = document.createElement(time === null ? "b" : "button");
+  when.textContent = time === null ? "never" : `${time.toFixed(1)} s`;
+  if (time !== null) when.addEventListener("click", () => moveTo(time));
+  const where = document.createElement("i");
+  where.textContent = s === null ? "" : `${s.toFixed(0)} m`;
+  row.append(when, where, `${who}: ${what}${until === null ? "" : `, until ${until.toFixed(1)} s`}${why ? `: ${why}` : ""}`);
+  return row;
+}
+
+const FRESH = 3; // s for which an event is told
+
+// Who is ahead in the lane, or else nearest, and what has just begun.
+function tellOthers(find, scene, time) {
+  const last = scene.events.filter((event) => event.time !== null && event.time <= time + 1e-6 && time < event.time + FRESH).pop();
+  find(".hud .event").hidden = !last;
+  find(".hud .event").textContent = last ? `${last.who}: ${last.what}` : "";
+  const { away, whom, isAhead } = isAmong(scene) ? scene.others.near : { away: [] };
+  const n = Math.min(Math.round(time / 0.1), away.length - 1);
+  const isNear = n >= 0 && away[n] !== null;
+  find(".hud .other").hidden = !isNear;
+  if (!isNear) return;
+  const actor = scene.others.actors[whom[n]];
+  const speed = Math.abs(kmh(actor.speed[clamp(n - actor.first, 0, actor.speed.length - 1)]));
+  find(".hud .other").textContent = `${isAhead[n] ? "gap" : "nearest:"} ${away[n].toFixed(1)} m to ${actor.name}, ${speed < 1 ? "standing" : `${speed.toFixed(0)} km/h`}`;
+}
+
 // Texts of a description are set as text, never as markup.
-function write(find, scene, trip, fastest) {
+function write(find, scene, trip, fastest, moveTo) {
   find(".title").textContent = scene.title;
   find(".badge").textContent = scene.outcome;
   find(".verdict").hidden = !scene.outcome;
@@ -77,6 +106,10 @@ function write(find, scene, trip, fastest) {
   find(".origin").textContent = scene.about;
   find(".words p").textContent = scene.words;
   find(".words").hidden = !scene.words;
+  const never = scene.events.filter(({ time }) => time === null).length;
+  find(".events").hidden = !scene.events.length;
+  find(".events summary").textContent = `${scene.events.length} events${never ? `, ${never} of them never happened` : ""}`;
+  find(".events ol").append(...scene.events.map((event) => listed(event, moveTo)));
   find(".hint").textContent = matchMedia("(pointer: coarse)").matches
     ? "drag to look around, pinch to come nearer"
     : "drag to look around, scroll to come nearer";
@@ -96,6 +129,7 @@ function tell(find, scene, trip, pose, time) {
   find(".hud .place").textContent = trip.isDriven
     ? `${pose.s.toFixed(0)} m of ${scene.road.length.toFixed(0)} m${isOver ? `, ended at ${trip.duration.toFixed(1)} s` : ""}`
     : `of ${scene.road.length.toFixed(0)} m`;
+  tellOthers(find, scene, Math.min(time, trip.duration));
   const lane = find(".hud .lane");
   lane.textContent = trip.isDriven
     ? share > 0 ? `${share} % of the car outside its lane` : `${Math.abs(middle).toFixed(2)} m ${side} of the lane's middle`
