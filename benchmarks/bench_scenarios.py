@@ -66,7 +66,7 @@ def table(only: str) -> Iterator[str]:
     for name in filter(lambda each: fnmatchcase(each, only), scenarios()):
         found = measured.Measured(driven(name))
         said = []
-        for row in prescribed.PRESCRIBED:
+        for row in (*prescribed.PRESCRIBED, *prescribed.OF_ROBOT):
             if row.scenario == name:
                 value, unit = getattr(found, row.what)(row.who, row.want), prescribed.UNITS.get(row.what, "m")
                 of = f"{row.what.replace('_', ' ')}{f' of no. {row.who + 1}' if row.who else ''}"
@@ -117,7 +117,8 @@ def main() -> None:
     catalogue = json.loads(truths)["scenarios"]
     roads = json.loads((TRUTHS / "roads.json").read_text())["roads"] if given.roads else [None]
     roads = roads[given.road - 1 : given.road] if given.road else roads
-    pairs = [(road, one) for road in roads for one in catalogue if fnmatchcase(one["name"], given.only)]
+    named = [one for one in catalogue if fnmatchcase(one["name"], given.only)]
+    pairs = [(road, one) for road in roads for one in named if road is None or "grid" in one]
     fit = [(road, one) for road, one in pairs if road is None or one["name"] not in road["fits"]["all but"]]
     counts, sure = Counter[str](), 0
     chosen = random.Random(1).sample(fit, given.sample) if given.sample else fit

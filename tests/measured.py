@@ -126,6 +126,21 @@ class Measured:
         x, y, *_ = self.car(self.until)
         return _worst(self.along(x, y)[1], want)
 
+    def released(self, who: int, want: float) -> float:
+        """The speed sideways with which the script leaves the tested car to its driver, over 0.1 s."""
+        time = self.drive.handovers[-1].end
+        x, y, *_ = self.car(np.array([time - 0.1, time]))
+        return float(np.abs(np.diff(self.along(x, y)[1]))[0] / 0.1)
+
+    def led(self, who: int, want: float) -> float:
+        """The speed of the tested car until the script leaves it to its driver."""
+        return _worst(self.car(self.until[self.until <= self.drive.handovers[-1].end])[3] * 3.6, want)
+
+    def changes_by(self, who: int, want: float) -> float:
+        """How far to the left the tested car is at the event."""
+        x, y, *_ = self.car(self.until[-1:])
+        return float(self.along(x, y)[1][0])
+
     def speed(self, who: int, want: float) -> float:
         """At the event."""
         return float(self.other(who, self.until[-1])[3] * 3.6)

@@ -1,4 +1,4 @@
-"""What sources prescribe of the 53 scenarios, at nominal values and at ends of the grids: numbers alone,
+"""What sources prescribe of the scenarios, at nominal values and at ends of the grids: numbers alone,
 written from Euro NCAP's standard ranges (Vector's CA-FC 2026), ASAM's set for UN R157, CARLA's leaderboard
 and NHTSA's typology with FMVSS No. 127. Each number has its tolerance, and whose that is: "NCAP" (the tested
 car's speed within 0.5 km/h and its path within 0.05 m, the place of impact within 0.05 m, the gap before
@@ -15,10 +15,10 @@ OURS = {
     "km/h": 1.8, "m": 0.5, "m/s": 0.5, "m/s2": 0.3, "s": 0.1, "%": 100 * 0.05 / WIDTH, "": 0.01,
 }  # fmt: skip
 UNITS = {
-    "ego": "km/h", "speed": "km/h", "to": "km/h", "keeps": "km/h", "keeps_own": "km/h",
+    "ego": "km/h", "led": "km/h", "speed": "km/h", "to": "km/h", "keeps": "km/h", "keeps_own": "km/h",
     "at_first": "km/h", "rate": "m/s2",
     "sideways": "m/s", "sideways_rate": "m/s2", "headway": "s", "starts": "s", "begins": "s", "impact": "%",
-    "friction": "",
+    "friction": "", "released": "m/s",
 }  # fmt: skip
 """Of what is measured (see ``measured.py``); all else is in metres."""
 OF_NCAP = {
@@ -29,6 +29,7 @@ OF_NCAP = {
     "flank": 0.05,
     "gap": 0.5,
     "apart": 0.1,
+    "released": 0.05,
 }
 
 
@@ -198,3 +199,142 @@ PRESCRIBED: tuple[Row, ...] = tuple(
     )
     for row in rows
 )  # fmt: skip
+
+
+def _moved(scenario: str, ego: float, aside: float | None = None, *others: dict[str, float]) -> Iterator[Row]:
+    """Of a tested car that is made to drift with a speed sideways, in m/s below 1, or to change lanes."""
+    found = [row for row in _rows(scenario, ego, *others) if row.what not in ("ego", "aside")]
+    found.append(Row(scenario, 0, "led", ego, OF_NCAP["ego"], "NCAP"))
+    if aside is not None and abs(aside) < 1:
+        found.append(Row(scenario, 0, "released", aside, OF_NCAP["released"], "NCAP"))
+    elif aside is not None:
+        found.append(Row(scenario, 0, "changes_by", aside, OURS["m"], "ours"))
+    yield from found
+
+
+def _from_rest(scenario: str, *others: dict[str, float]) -> Iterator[Row]:
+    yield from (row for row in _rows(scenario, 0, *others) if row.what not in ("ego", "aside"))
+
+
+OF_ROBOT: tuple[Row, ...] = tuple(
+    row
+    for rows in (
+        _rows("ncap:CCFhol", 70, {"at_first": 70, "last_left": 0}, {"keeps": 70, "left": 3.5}),
+        _rows("ncap:CPTA", 10, {"speed": 5, "behind_junction": 5, "run_up": 2}),
+        _rows("ncap:CBTA", 10, {"speed": 15, "behind_junction": 5}),
+        _moved("ncap:ELK_RE", 70, 0.4),
+        _moved("ncap:ELK_RE ego=90 lateral_speed=0.6", 90, 0.6),
+        _moved("ncap:ELK_RE ego=80 lateral_speed=0.2", 80, 0.2),
+        _moved("ncap:CC_ELK_On", 70, 0.5, {"keeps": 70, "left": 3.5}),
+        _moved("ncap:CC_ELK_On lateral_speed=0.3", 70, 0.3, {"keeps": 70}),
+        _moved("ncap:CC_ELK_Ov", 70, 0.5, {"keeps": 80, "left": 3.5}),
+        _moved("ncap:CC_ELK_Ov lateral_speed=0.7", 70, 0.7, {"keeps": 80}),
+        _moved("ncap:CM_ELK_On", 70, 0.5, {"keeps": 70}),
+        _moved("ncap:CM_ELK_Ov", 60, 0.5, {"keeps": 70, "left": 3.5}),
+        _moved("ncap:LKA", 72, 0.4),
+        _moved("ncap:LKA line=solid lateral_speed=0.5", 72, 0.5),
+        _moved("ncap:LKA side=right lateral_speed=0.2", 72, 0.2),
+        _from_rest("ncap:CCCscp_SfS", {"speed": 30}),
+        _from_rest("ncap:CMCscp_SfS", {"speed": 30}),
+        _from_rest("ncap:CCFtap_SfS", {"speed": 30}),
+        _from_rest("ncap:CMFtap_SfS", {"speed": 30}),
+        _from_rest("ncap:CBNAO_SfS", {"speed": 15}),
+        _from_rest("ncap:CPMFC", {"keeps": 0, "impact": 50}),
+        _rows("ncap:ACC_CCRs", 80, _ahead(0, 50)),
+        _rows("ncap:ACC_CCRs ego=130 distance=250 impact=100", 130, _ahead(0, 100)),
+        _rows("ncap:ACC_CCRm", 80, _ahead(20, 50)),
+        _rows("ncap:ACC_CCRm ego=130 model=motorbike target=60", 130, _ahead(60, 50)),
+        _rows("ncap:ACC_CCRb", 55, {"at_first": 50, "rate": -4, "impact": 50}),
+        _rows("ncap:ACC_cut_in", 120, {"keeps": 70, "sideways": 2, "last_left": 0, "left": -3.5}),
+        _rows("ncap:ACC_cut_out", 50, {"keeps": 50, "headway": 2, "to_the_next": 50 / 3.6 * 3}, {"keeps": 0}),
+        _rows("ncap:ACC_VRU", 60, {"speed": 20, "impact": 50}),
+        _rows("ncap:ACC_auto_resume", 30, {"at_first": 30, "rate": -3}),
+        _rows("ncap:S_bend", 80),
+        _rows("ncap:S_bend ego=130 radius=r650", 130),
+        _rows("r157:motorway_keeping", 130),
+        _rows("r157:motorway_blocking_target", 130, {"keeps": 0, "lead": 300, "left": 0}),
+        _rows("r157:motorway_follow_emergency_brake", 130, {"at_first": 130, "headway": 2, "rate": -6}),
+        _rows("r157:motorway_cut_in", 130, {"keeps": 100, "gap": 40, "sideways": 1.5, "left": -3.5, "last_left": 0}),
+        _rows("r157:motorway_cut_out", 110, {"keeps": 110, "headway": 2, "sideways": 1.5, "to_the_next": 100}, {"keeps": 0}),
+        _moved("r157:lane_change", 110, 3.5),
+        _moved("r157:lane_change lane=right ego=130", 130, -3.5),
+        _moved("r157:lane_change_rear_vehicle", 90, 3.5, {"left": 3.5}),
+        _moved("r157:lane_change_side_vehicle", 90, None, {"keeps": 90, "lead": 0, "left": 3.5}),
+        _moved("r157:lane_change_two_vehicles", 90, None, {"keeps": 90, "lead": 3, "left": 7}),
+        _rows("leaderboard2:signalised_left_turn", 20, {"keeps_own": 30}),
+        _rows("leaderboard2:right_turn", 20, {"keeps_own": 30, "meets": 0}),
+        _rows("leaderboard2:opposite_vehicle_taking_priority", 40, {"keeps_own": 30, "meets": 0}),
+        _rows("leaderboard2:opposite_vehicle_running_red_light", 50, {"keeps_own": 40, "meets": 0}),
+        _rows("leaderboard2:crossing_bicycle_flow", 20, {"speed": 15, "behind_junction": 6}),
+        _rows("leaderboard2:vehicle_turning_pedestrian", 20, {"speed": 5, "behind_junction": 8}),
+        _rows("leaderboard2:priority_at_junction", 40, {"keeps_own": 0}),
+        _rows("leaderboard2:red_light", 40),
+        _rows("leaderboard2:stop_sign", 40),
+        _rows("leaderboard2:blocked_intersection", 20, {"keeps": 0}),
+        _rows("leaderboard2:highway_cut_in", 90, {"speed": 72}),
+        _moved("leaderboard2:highway_exit", 80, -3.5, {"keeps": 80, "lead": 30, "left": -3.5}),
+        _rows("leaderboard2:merger_into_slow_traffic", 60),
+        _rows("leaderboard2:static_cut_in", 60, {"at_first": 0, "left": -3.5}),
+        _rows("leaderboard2:parking_cut_in", 50, {"at_first": 0}),
+        _rows("leaderboard2:parking_crossing_pedestrian", 40, {"speed": 8, "start_distance": 14}, STANDS),
+        _rows("leaderboard2:pedestrian_crossing", 30, {"speed": 5}),
+        _rows("leaderboard2:hard_brake", 50, {"at_first": 50, "headway": 1.5, "rate": -8}),
+        _rows("leaderboard2:construction_obstacle", 50, STANDS),
+        _moved("leaderboard2:construction_obstacle_two_ways", 40, None, STANDS, {"keeps": 40}),
+        _rows("leaderboard2:accident", 50, STANDS, STANDS),
+        _rows("leaderboard2:parked_obstacle", 50, {"keeps": 0, "left": -0.7}),
+        _rows("leaderboard2:hazard_at_side_lane", 50, {"keeps": 15, "left": -0.9}, {"keeps": 15}),
+        _rows("leaderboard2:invading_turn", 40, {"keeps_own": 40, "left": 2.4}),
+        _rows("leaderboard2:slow_leader_lane_change", 60, {"keeps": 25, "gap": 70}, {"keeps": 60, "left": 3.5}),
+        _rows("leaderboard2:interurban_actor_flow", 20),
+        _rows("leaderboard2:yield_to_emergency_vehicle", 60, {"keeps": 85, "left": 3.5}),
+        _rows("nhtsa:control_loss_prior_maneuver", 25),
+        _rows("nhtsa:control_loss", 60),
+        _rows("nhtsa:running_red_light", 56, {"keeps_own": 40, "meets": 0}),
+        _rows("nhtsa:running_stop_sign", 56, {"keeps_own": 40, "meets": 0}),
+        _moved("nhtsa:road_edge_departure_prior_maneuver", 89, 0.5),
+        _moved("nhtsa:road_edge_departure", 89, 0.5),
+        _moved("nhtsa:animal_prior_maneuver", 72, 3.5),
+        _rows("nhtsa:pedestrian_prior_maneuver", 20, {"speed": 5, "behind_junction": 6}),
+        _rows("nhtsa:pedalcyclist_prior_maneuver", 20, {"speed": 15, "behind_junction": 6}),
+        _rows("nhtsa:backing_up_into_vehicle", 40, {"at_first": 0}),
+        _rows("nhtsa:turning_same_direction", 56, {"at_first": 45}),
+        _rows("nhtsa:parking_same_direction", 40, {"at_first": 0}),
+        _rows("nhtsa:drifting_same_direction", 89, {"keeps": 89, "lead": 2, "sideways": 0.5, "left": 3.5}),
+        _rows("nhtsa:maneuver_opposite_direction", 72, {"keeps": 72, "sideways": 1.5}, {"keeps": 60}),
+        _moved("nhtsa:following_vehicle_maneuver", 72, 3.5, {"keeps": 50, "left": 3.5}),
+        _rows("nhtsa:lead_vehicle_accelerating", 72, {"at_first": 15, "gap": 80 - 3 * 57 / 3.6, "rate": 1.5}),
+        _rows("nhtsa:left_turn_across_path_signalised", 56, {"keeps_own": 20, "meets": 0}),
+        _rows("nhtsa:turning_right_signalised", 56, {"keeps_own": 20}),
+        _rows("nhtsa:turning_not_signalised", 56, {"keeps_own": 20}),
+        _rows("nhtsa:evasive_action", 89, {"keeps": 89, "lead": 6, "most_right": 2.3, "last_left": 3.5}),
+        _moved("nhtsa:evasive_action_prior_maneuver", 89, 3.5, {"keeps": 70, "most_left": 1.0}),
+        _moved("nhtsa:object_prior_maneuver", 72, 3.5, {"keeps": 0, "lead": 240, "left": 3.5}),
+        _rows("nhtsa:object_no_maneuver", 89, {"keeps": 0, "left": 0}),
+        _rows("r152:stationary_car", 42, _ahead(0, 50)),
+        _rows("r152:moving_car", 60, _ahead(20, 50)),
+        _rows("r152:pedestrian", 40, {"speed": 5, "impact": 50}),
+        _rows("r152:bicycle", 38, {"speed": 15, "left": -15}),
+        _rows("r152:false_reaction_cars", 50, {"keeps": 0, "apart": 4.5}, STANDS),
+        _rows("r152:false_reaction_pedestrian", 50, {"keeps_own": 0, "left": -2.15}),
+        _rows("r171:lane_positioning", 70),
+        _rows("r171:stationary_vehicle", 90, STANDS),
+        _rows("r171:lead_vehicle_decelerates", 90, {"at_first": 90, "headway": 2, "rate": -4}),
+        _rows("r171:cut_in", 90, {"keeps": 70, "gap": 25, "sideways": 1, "left": -3.5}),
+        _rows("r171:cut_out", 70, {"keeps": 70, "headway": 2, "to_the_next": 60}, {"keeps": 0}),
+        _moved("r171:lane_change", 90, 3.5, {"left": 3.5}),
+        _rows("r79:B1_lane_keeping", 70),
+        _rows("r79:B1_most_lateral_acceleration", 80),
+        _moved("r79:CSF_lane_departure", 70, 0.4),
+        _moved("r79:CSF_lane_departure ego=130 side=right lateral_speed=0.6", 130, 0.6),
+        _moved("r79:C_lane_change", 90, 3.5, {"keeps": 130, "left": 3.5}),
+        _moved("r79:C_rear_vehicle", 90, 3.5, {"left": 3.5}),
+        _rows("r79:ESF_evades", 90, {"keeps": 90, "lead": 1, "sideways": 0.5}),
+        _rows("r79:ESF_obstacle", 60, {"keeps": 0, "lead": 100, "left": -1}),
+        _moved("r130:lane_departure", 65, 0.4),
+        _moved("r130:lane_departure lateral_speed=0.8 side=right", 65, 0.8),
+        _moved("r130:lane_departure lateral_speed=0.1", 65, 0.1),
+    )
+    for row in rows
+)  # fmt: skip
+"""Of the scenarios that came later: what the test robot drives, or is made to do."""

@@ -9,7 +9,7 @@ import pytest
 
 from command_line import invoke, roadgpt
 from roadgpt.brief.plan import read_scene
-from roadgpt.brief.scenarios import scenarios
+from roadgpt.brief.scenarios import MISSING, scenarios
 from roadgpt.run import read_run
 
 pytestmark = pytest.mark.usefixtures("no_workers")
@@ -27,11 +27,14 @@ def test_the_list_has_every_scenario_on_a_screen_of_80_columns() -> None:
     said = roadgpt("scenarios").output
     assert all(f"  {name}\n" in said for name in scenarios())
     assert max(map(len, said.splitlines())) <= 80
+    assert all(f"  {row.name}\n" in said for row in MISSING.values())
+    assert said.count("not possible: ") == len(MISSING)
+    assert "the tested car has no doors" in invoke("scenarios", "ncap:CBDA").stderr
     rows = [
         json.loads(line)
         for line in roadgpt("scenarios", "ncap:*", "r157:cut_in", "--json").output.splitlines()
     ]
-    assert len(rows) == 19
+    assert len(rows) == sum(name.startswith("ncap:") for name in scenarios()) + 1
     assert rows[-1]["parameters"]["gap"][0] == rows[-1]["values"]["gap"] == 30
     whole = roadgpt("scenarios", "r157:cut_in").output
     assert max(map(len, whole.splitlines())) <= 80

@@ -16,10 +16,11 @@ from shapely import LineString, Point, Polygon
 
 from boxed import corners
 from outside_judge import SHARED
+from prescribed import OF_NCAP, OURS
 from roadgpt.brief.beside import friction_of
-from roadgpt.brief.model import Brief, mirrored
+from roadgpt.brief.model import Brief, mirrored, mirrored_scene
 from roadgpt.brief.plan import read_plan, read_scene
-from roadgpt.brief.scenarios import LANE_WIDTH, chosen, points_of, scenario, scenarios
+from roadgpt.brief.scenarios import LANE_WIDTH, MISSING, chosen, points_of, scenario, scenarios
 from roadgpt.brief.scene import Scene
 from roadgpt.brief.scene_fit import fitted
 from roadgpt.errors import UsageError
@@ -29,9 +30,12 @@ from roadgpt.run.exporting import export
 from roadgpt.traffic.actor import SIZES
 
 HERE = Path(__file__).parent
-CATALOGUE: list[dict[str, Any]] = json.loads((HERE / "catalogue.json").read_text())["scenarios"]
+WRITTEN: dict[str, Any] = json.loads((HERE / "catalogue.json").read_text())
+CATALOGUE: list[dict[str, Any]] = WRITTEN["scenarios"]
 ROADS: list[dict[str, Any]] = json.loads((HERE / "roads.json").read_text())["roads"]
 BY_NAME = {entry["name"]: entry for entry in CATALOGUE}
+FIRST = [name for name, entry in BY_NAME.items() if "grid" in entry]
+"""Those of which parameters, grid, and the roads on which they fit were written before, too."""
 OF_THE_JUNCTION = {"turn radius"}
 """What the nominal junction has of its own."""
 TOLD = {"parked", "places", "distance"}
@@ -40,6 +44,10 @@ RENAMED = {"from": "start", "to": "end"}
 SAMPLE = (
     "ncap:CCRb", "ncap:CCFtap", "ncap:CPNCO", "ncap:CBLA", "r157:cut_in", "r157:cut_out_fully_blocking",
     "leaderboard:control_loss", "nhtsa:straight_crossing_paths",
+    "ncap:CCFhol", "ncap:CPTA", "ncap:CC_ELK_On", "ncap:CCFtap_SfS", "ncap:CPMFC", "ncap:ACC_cut_in",
+    "r157:lane_change_two_vehicles", "r79:C_lane_change", "r152:false_reaction_cars",
+    "leaderboard2:opposite_vehicle_taking_priority", "leaderboard2:static_cut_in",
+    "nhtsa:running_red_light", "nhtsa:backing_up_into_vehicle",
 )  # fmt: skip
 
 
@@ -74,9 +82,22 @@ def points(blocks: list[dict[str, list[Any]]], dropped: set[str]) -> int:
 
 def test_all_that_was_planned_is_there_in_its_order() -> None:
     assert [*scenarios()] == [entry["name"] for entry in CATALOGUE]
+    assert [*MISSING] == WRITTEN["not possible"]
+    for name, row in MISSING.items():
+        with pytest.raises(UsageError, match=f"^{name} is not possible: {row.impossible}"):
+            chosen(name)
 
 
-@pytest.mark.parametrize("name", BY_NAME)
+def test_tolerances_are_those_of_the_sources_or_ours() -> None:
+    """Euro NCAP's, and ours, as ``prescribed.py`` has them."""
+    numbers = [float(each.partition(" ")[0]) for each in scenario("ncap:ELK_RE").tolerances.values()]
+    assert numbers[:3] == [OF_NCAP["ego"], OF_NCAP["aside"], OF_NCAP["past"]]
+    assert numbers[3:6] == [OF_NCAP["gap"], OF_NCAP["apart"], OF_NCAP["released"]]
+    assert numbers[6:] == [OURS[each] for each in ("km/h", "m", "m/s", "m/s2", "s", "")]
+    assert [*scenario("r157:cut_in").tolerances] == [*scenario("ncap:ELK_RE").tolerances][6:]
+
+
+@pytest.mark.parametrize("name", FIRST)
 def test_a_scenario_has_the_parameters_and_the_grid_that_were_written_before(name: str) -> None:
     made, entry = scenarios()[name], BY_NAME[name]
     for key, (value, _) in entry["parameters"].items():
@@ -97,6 +118,14 @@ def test_each_is_a_scene_and_what_the_command_line_takes_is_what_it_tells(name: 
     assert str(faster) == f"{name} ego=31"
     assert faster.onto(Scene()).speed == read_plan("straight && ego v=31").scene.speed
     assert [*map(str, chosen(str(faster)))] == [str(faster)]
+
+
+@pytest.mark.parametrize("name", sorted({*BY_NAME} - {*FIRST}))
+def test_every_point_of_a_grid_is_a_scene(name: str) -> None:
+    every = [*scenario(name).points("standard", True)]
+    for point in every[:: len(every) // 8 or 1]:
+        assert point.onto(Scene()).speed is not None
+        assert read_plan(point.plan)
 
 
 def test_a_grid_keeps_what_was_given_and_its_points_are_read_back_as_they_are() -> None:
@@ -126,7 +155,7 @@ def test_points_of_a_grid_with_speeds_below_0_are_left_out() -> None:
     ("text", "said"),
     [
         ("r157:cutin", "did you mean 'r157:cut_in'"),
-        ("cut_in", "r157:cut_in"),
+        ("cut_in", ":cut_in"),
         ("r157:cut_in slow=3", "did you mean 'slower'"),
         ("r157:cut_in gap=far", "'gap' of r157:cut_in is a number"),
         ("r157:cut_in lane=up", "left"),
@@ -158,7 +187,7 @@ def test_a_scenario_asks_nothing_of_a_road_on_which_it_can_happen_that_the_words
     road = ROADS[number]
     brief, unfit = read_plan(road["plan"]), road["fits"]["all but"]
     for name, one in scenarios().items():
-        if name not in unfit:
+        if name in FIRST and name not in unfit:
             needed = fitted(brief, one.onto(Scene()), 70 / 3.6)
             assert fitted(needed, one.onto(Scene()), 70 / 3.6) == needed
 
@@ -251,6 +280,23 @@ def test_with_traffic_on_the_left_everybody_moves_as_in_the_mirror_image(name: s
     (x, y, *_), (across, along, *_) = plain.drive.others.states.T, other.drive.others.states.T
     assert np.nanmax(abs(across - x)) < 0.01
     assert np.nanmax(along + y) - np.nanmin(along + y) < 0.01
+
+
+@pytest.mark.parametrize("name", ["ncap:CC_ELK_On", "r157:lane_change_rear_vehicle"])
+def test_with_traffic_on_the_left_the_tested_car_drifts_to_the_other_side(name: str) -> None:
+    aside = []
+    for left_hand in (False, True):
+        run = made(name, drives=True, left_hand=left_hand)
+        assert run.drive is not None, run.description
+        assert run.road is not None
+        middle = run.world.profile_of(run.road).middle(run.drive["s"])
+        aside.append((run.drive["t"] - middle)[:500])
+    assert np.abs(aside[0]).max() > 0.5
+    assert aside[0] == pytest.approx(-aside[1], abs=0.02)
+
+
+def test_where_the_tested_car_starts_aside_is_mirrored_too() -> None:
+    assert mirrored_scene(read_scene("ego t=-1 v=50")) == read_scene("ego t=1 v=50")
 
 
 def test_slippery_places_let_the_tested_car_slip_there_and_nowhere_else() -> None:

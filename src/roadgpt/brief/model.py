@@ -333,7 +333,9 @@ def mirrored_scene(scene: Scene) -> Scene:
     actors = [
         each.model_copy(update={"offset": each.offset and each.offset.times(-1)}) for each in other.actors
     ]
-    return other.model_copy(update={"actors": tuple(actors)})
+    return other.model_copy(
+        update={"actors": tuple(actors), "offset": other.offset and other.offset.times(-1)}
+    )
 
 
 def _with_other_sides(value: Any) -> Any:

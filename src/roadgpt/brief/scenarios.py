@@ -41,6 +41,20 @@ FORMULA, SPEEDS = re.compile(r"\{(.+?)\}"), re.compile(r"(?:\bv=|\bto=|\bspeed )
 TABLE: dict[str, Any] = tomllib.loads(read_text(Path(__file__).with_name("scenarios.toml")))
 WORDS: Mapping[str, str] = TABLE.pop("words")
 ROADS: Mapping[str, str] = TABLE.pop("roads")
+TOLERANCES: Mapping[str, Mapping[str, str]] = TABLE.pop("tolerances")
+
+
+class Missing(NamedTuple):
+    """A row of the catalogue that is no scenario."""
+
+    name: str
+    says: str
+    source: str
+    impossible: str
+    """Why it is not possible."""
+
+
+MISSING = {name: Missing(name, **TABLE.pop(name)) for name, row in [*TABLE.items()] if "impossible" in row}
 
 
 class Scenario(NamedTuple):
@@ -53,13 +67,15 @@ class Scenario(NamedTuple):
     """The name of its nominal road in ``ROADS``, as a template like ``scene``."""
     scene: str
     """A scene as in plans, with what is computed of the parameters in braces."""
-    avoidable: str
-    """The criterion by which it is judged whether a collision was avoidable: see ``Limits.avoidable``."""
     parameters: Mapping[str, Sequence[Any]]
     """The nominal value of each, with its unit or what it means."""
     grid: Sequence[Mapping[str, Sequence[Any]]]
     """The standard grid: blocks, each a product of its lists."""
     values: Mapping[str, Value]
+    avoidable: str = "any"
+    """The criterion by which it is judged whether a collision was avoidable: see ``Limits.avoidable``."""
+    judged: str = "impact"
+    """Which of Euro NCAP's classes tell how well it ended."""
     given: tuple[str, ...] = ()
     """The parameters that were given a value, which a grid leaves as they are."""
 
@@ -69,6 +85,11 @@ class Scenario(NamedTuple):
             if name in self.given or value != self.parameters[name][0]:
                 told += f" {name}={_text(value)}"
         return told
+
+    @property
+    def tolerances(self) -> Mapping[str, str]:
+        """Within how much what the robot drives is what the source prescribes."""
+        return TOLERANCES.get(self.name.partition(":")[0], {}) | TOLERANCES["ours"]
 
     @property
     def scene_text(self) -> str:
@@ -187,11 +208,13 @@ def scenarios() -> Mapping[str, Scenario]:
 
 def chosen(text: str) -> list[Scenario]:
     """Returns the scenarios that a text names, such as "ncap:*, r157:cut_in slower=30". Raises UsageError if
-    there is no such scenario or parameter, or a value is not possible."""
+    there is no such scenario or parameter, or a value or a scenario is not possible."""
     found: dict[str, Scenario] = {}
     for part in filter(None, map(str.strip, text.split(","))):
         name, *given = part.split()
         named = [each for each in scenarios().values() if fnmatchcase(each.name, name)]
+        if not named and name in MISSING:
+            raise UsageError(f"{name} is not possible: {MISSING[name].impossible}")
         if not named:
             near = _nearest(name, scenarios())
             raise UsageError(f"there is no scenario '{name[:40]}'; {near or 'roadgpt scenarios lists them'}")

@@ -200,21 +200,26 @@ def scenarios(names: tuple[str, ...], as_json: bool) -> None:
     roadgpt scenarios "ncap:CP*" --json
     roadgpt run "a country road with wide bends" --scenario "r157:cut_in gap=20"
     """
-    from roadgpt.brief.scenarios import chosen
+    from roadgpt.brief.scenarios import MISSING, Missing, chosen
 
     source = ""
-    for each in chosen(",".join(names) or "*"):
+    for each in (*chosen(",".join(names) or "*"), *(() if names else MISSING.values())):
         if as_json:
-            told = each._asdict() | {"scene": each.scene_text, "template": each.scene, "road": each.plan}
+            told = each._asdict()
+            if not isinstance(each, Missing):
+                told |= {"scene": each.scene_text, "template": each.scene, "road": each.plan}
             click.echo(json.dumps(told, ensure_ascii=False))
             continue
         if each.source.partition(";")[0] != source:
             source = each.source.partition(";")[0]
-            click.echo(f"{source}\n" if not names else "", nl=False)
+            click.echo(f"{click.wrap_text(source, 80)}\n" if not names else "", nl=False)
         rows = [("", each.says)]
-        if names:
+        if isinstance(each, Missing):
+            rows.append(("", f"not possible: {each.impossible}"))
+        elif names:
             rows += [("source", each.source), ("scene", each.scene_text), ("road", each.plan)]
-            rows.append(("avoidable", f"by {each.avoidable}"))
+            rows += [("avoidable", f"by {each.avoidable}"), ("judged", f"by {each.judged}")]
+            rows += [("within", f"{limit}, {what}") for what, limit in each.tolerances.items()]
             known = each.parameters
             rows += [(f"{name}={value}", known[name][1] or "a word") for name, value in each.values.items()]
             for block in each.grid:
