@@ -89,7 +89,7 @@ class Scenario(NamedTuple):
     @property
     def tolerances(self) -> Mapping[str, str]:
         """Within how much what the robot drives is what the source prescribes."""
-        return TOLERANCES.get(self.name.partition(":")[0], {}) | TOLERANCES["ours"]
+        return {**TOLERANCES.get(self.name.partition(":")[0], {}), **TOLERANCES["ours"]}
 
     @property
     def scene_text(self) -> str:
