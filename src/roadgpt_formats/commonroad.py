@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from roadgpt.brief.junctions import side_of
-from roadgpt.export.ego import Poses, start_of
+from roadgpt.export.ego import Poses
 from roadgpt.export.exporters.opendrive import LATITUDE, LONGITUDE
 from roadgpt.export.exporters.opendrive.signals import SIGNS
 from roadgpt.export.markup import XmlElement, number
@@ -224,7 +224,7 @@ def _sign(id_: int, place: Sequence[float], virtual: str, **told: str) -> XmlEle
 def _problem(id_: int, road: Road, world: World, goal: int) -> XmlElement:
     """Returns the planning problem: to drive from rest to the last lanelet. The time limit is 10 s plus twice
     the time that a calm driver needs for the road at constant speed."""
-    start = start_of(road)
+    start = world.start_on(road)
     place = np.round(road.at(start, world.profile_of(road).middle(start)), 6)
     out = XmlElement("planningProblem", {"id": id_})
     state = out.add("initialState")

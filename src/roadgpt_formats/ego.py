@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roadgpt.export.ego import CAR, Poses, start_of
+from roadgpt.export.ego import CAR, Poses
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 from roadgpt.road.speed_profile import GRAVITY, DrivingLimits, lane_speed
@@ -40,7 +40,7 @@ def calm_speed(road: Road, world: World) -> float:
 def calm_profile(road: Road, world: World, first: float = 0.0) -> SpeedProfile:
     """Returns the speeds of a calm driver in the middle of the right lane, who begins with ``first`` m/s, or
     as fast as the road allows."""
-    start = start_of(road)
+    start = world.start_on(road)
     count = max(2, int(np.ceil((road.length - start) / STEP)) + 1)
     s = np.linspace(start, road.length, count)
     step, bend = float(s[1] - s[0]), road.curvature(s)

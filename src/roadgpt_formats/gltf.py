@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from PIL import Image
 
-from roadgpt.export.ego import Poses, goal_of, start_of
+from roadgpt.export.ego import Poses, goal_of
 from roadgpt.geometry.curve import Array
 from roadgpt.ground.mesh import GroundMesh, mesh_of, water_of
 from roadgpt.network import Network, NetworkRoad, network_of, only_road
@@ -257,7 +257,7 @@ def _dashed(name: str, road: Road, profile: Profile, s: Array, index: int) -> Tr
 
 def _path(road: Road, s: Array, world: World, poses: Poses | None) -> TriangleMesh:
     if poses is None:
-        start, end = start_of(road), goal_of(road)
+        start, end = world.start_on(road), goal_of(road)
         part = np.r_[start, s[(s > start) & (s < end)], end]
         middle = world.profile_of(road).middle(part)
         half = np.minimum(PATH_WIDTH, world.profile_of(road).width(part) / 2) / 2

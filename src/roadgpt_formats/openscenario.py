@@ -99,7 +99,8 @@ def scenario(
     The waypoints of a route are its start, the middle of each lane between the first and the last, and its
     end. The scenario also ends if the car drives for too long."""
     # stations are those of the rear axle
-    start, near = max(start_of(road) + CAR.rear_axle, 0.0), road.length - (goal_of(road) + CAR.rear_axle)
+    start = max(world.start_on(road) + CAR.rear_axle, 0.0)
+    near = road.length - (goal_of(road) + CAR.rear_axle)
     middles = [mean(both) for both in pairwise(road.starts)]
     waypoints = [_on_route(road, world, s) for s in (start, *middles[1:-1], road.length)]
     told = "A car drives the right lane from the start of the road to its end."

@@ -153,7 +153,9 @@ def test_a_row_without_a_token_is_not_written() -> None:
 def test_what_junctions_have_is_in_a_form_and_has_a_way_to_say_it() -> None:
     for names_ in ROADS["forms"].values():
         assert {*names_} <= PARTS_OF_PLANS["junction"].keys()
-    assert {row["form"] for row in ROADS["junctions"].values()} == ROADS["forms"].keys()
+    of_plans_only = {"crossing"}  # the networks write no crosswalk as a place of its own
+    forms = {row["form"] for row in ROADS["junctions"].values()}
+    assert forms - of_plans_only == ROADS["forms"].keys()
     for thing in ("road", "junction"):
         silent = {"slope", "surroundings", "motorway", "beside", "size", "skew", "degrees", "exit"}
         assert PARTS_OF_PLANS[thing].keys() - silent <= ROADS["said"][thing].keys()

@@ -116,7 +116,7 @@ def _faults_of_turn_lanes(junction: JunctionClause) -> Iterator[str]:
 
 
 def _has_only_its_fields(junction: JunctionClause) -> bool:
-    usual, its = JunctionClause(kind=junction.kind), ROADS["forms"][FORMS[junction.kind]]
+    usual, its = JunctionClause(kind=junction.kind), ROADS["forms"].get(FORMS[junction.kind], ())
     others = (name for name in PARTS["junction"] if name not in ("take", *its))
     is_way = junction.take in (None, "back") or junction.take in TAKES[junction.kind]
     return is_way and all(getattr(junction, name) == getattr(usual, name) for name in others)

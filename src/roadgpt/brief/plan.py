@@ -200,7 +200,9 @@ TESTED_CAR = "ego"
 OF_ACTORS = _of_scene(Role, NUMBERS, where=tuple(PLACES), side=(*SIDES, "opposite")) | {"hits": Part("hits")}
 AN_ACTOR = language(OF_ACTORS, "road user", hits=lambda text: text.replace("-", " "))
 AN_ACTION = language(_of_scene(Action, NUMBERS, side=SIDES), "manoeuvre")
-OF_ITSELF = _of_scene(Scene, NUMBERS, turn=WAYS, person=get_args(Person)) | {"lane": Part("lane")}
+OF_ITSELF = _of_scene(Scene, NUMBERS, turn=WAYS, person=get_args(Person)) | {
+    "lane": Part("lane"), "parks": Part("parked", {side: side for side in SIDES}),
+}  # fmt: skip
 ITSELF = language(OF_ITSELF, TESTED_CAR, lane=_lane_number)
 A_LAND = language(_of_scene(Land, Land.model_fields, lie=get_args(Lie), side=SIDES), "landscape")
 SIGNAL = "lights"
@@ -534,7 +536,7 @@ def scene_fields(text: str) -> dict[str, object]:
             several["actors"].append(_read_role(part))
         elif first == TESTED_CAR:
             head, _, rest = part.partition(":")
-            _read_words(fields, head.split()[1:], ITSELF)
+            _read_words(fields, head.replace("parked ", "parked=").split()[1:], ITSELF)
             several["actions"] += [read_action(each) for each in rest.split(",") if each.strip()]
         elif first == SIGNAL:
             _set(fields, "signal", _made(Signal, _read_words({}, words, A_SIGNAL), part))

@@ -6,6 +6,7 @@ another, each begun by a condition. A number may be a range, from which each dri
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from math import ceil, inf
 from typing import Annotated, Any, Literal, Self, get_args
 
 from pydantic import AfterValidator, StringConstraints, model_validator
@@ -36,6 +37,7 @@ from roadgpt.language.table import (
     OF_ITSELF,
     PLACES,
     SCENES,
+    SIZES,
     SURFACES,
     WEATHER,
     one_of,
@@ -54,6 +56,9 @@ ON_ITS_WAY: tuple[What, ...] = ("merge", "turn_in", "turn_across", "cross", "run
 """What somebody does on a way of its own, on which it is from the begin on."""
 AROUND: tuple[What, ...] = ("overtake", "pass")
 """What leads the tested car around somebody."""
+FROM_BEHIND = 30.0  # m, who comes from behind a tested car that stands, where nothing is said
+MOST_BEHIND = 200.0  # m of road for more of them
+SPARE = 10.0  # m of road behind whoever is last
 MOST_MORE = 3
 """How many more of a kind there are at most where a scene says "2 or more"."""
 CAR, SIGNALS = "tested car", "lights"
@@ -347,6 +352,11 @@ class Scene(Frozen):
     offset: Amount | None = None
     """Where the tested car starts, in metres to the left of the middle of that lane, and keeps to until it
     pulls out."""
+    station: Amount | None = None
+    """Where the tested car starts, in metres from the start of the road; None: at its first metres, or, if it
+    stands, so far that who comes from behind is on the road."""
+    parks: Side | None = None
+    """The side of the road on which the tested car is parked at first, beside the lanes."""
     turn: Literal["left", "right", "straight"] | None = None
     """The way that the tested car takes at the first junction; None: that of the route."""
     person: Person | None = None
@@ -394,7 +404,27 @@ class Scene(Frozen):
                 f"lanes count from 1 to {MOST_LANES} from the kerb, or from -1 from the innermost one, and"
                 f" there is no lane {self.lane}; write for example lane=1"
             )
-        for action in self.actions[:1] if span(self.speed).hi == 0 else ():
+        self._check_actions()
+        for who, actions in ((None, self.actions), *((role, role.actions) for role in self.actors)):
+            for event in (action.at for action in actions if action.at and action.at.what):
+                if event.of == "ego":
+                    if who is None or event.what not in [each.what for each in self.actions]:
+                        raise ValueError(f"'{event}' needs a tested car that is told to '{event.what}'")
+                    continue
+                same = [each for each in self.actors if each.kind == event.of][event.number - 1 :][:1]
+                if not same or same[0] is who or event.what not in [each.what for each in same[0].actions]:
+                    raise ValueError(f"'{event}' needs another {event.of} that does '{event.what}'; name one")
+        return self
+
+    def _check_actions(self) -> None:
+        """Raises ValueError if the tested car cannot do what it is told, one thing after another."""
+        if self.parks and (self.offset or not self.actions or span(self.speed or exactly(0)).hi > 0):
+            why = "has an end: write wait 30, or pull_out" if not self.actions else "has no t= and no speed"
+            raise ValueError(f"the tested car is parked, which {why}")
+        first = next((each.what for each in self.actions if each.what != "wait"), "pull_out")
+        if self.parks and first not in ("pull_out", "release"):
+            raise ValueError(f"the tested car is parked; it waits, and pulls out before it can {first}")
+        for action in self.actions[:1] if self.stands else ():
             if action.station or action.distance or (action.at and not action.at.what):
                 raise ValueError(
                     f"the tested car stands until it {action}, and so never comes there; give time=, or what "
@@ -414,19 +444,14 @@ class Scene(Frozen):
                     f"the tested car {MANEUVERS[action.what].said} without end; write {action.what} 5, or "
                     "when what comes next begins"
                 )
+            if action.what == "u_turn" and follows:
+                raise ValueError(
+                    f"the drive ends when the tested car has turned round; leave {follows[0].what} out"
+                )
             before = [each.what for each in self.actions[: self.actions.index(action)]]
-            if action.what == "pull_out" and self.offset is None and "pull_over" not in before:
-                raise ValueError("the tested car pulls out, and is in its lane; write for example ego t=-2")
-        for who, actions in ((None, self.actions), *((role, role.actions) for role in self.actors)):
-            for event in (action.at for action in actions if action.at and action.at.what):
-                if event.of == "ego":
-                    if who is None or event.what not in [each.what for each in self.actions]:
-                        raise ValueError(f"'{event}' needs a tested car that is told to '{event.what}'")
-                    continue
-                same = [each for each in self.actors if each.kind == event.of][event.number - 1 :][:1]
-                if not same or same[0] is who or event.what not in [each.what for each in same[0].actions]:
-                    raise ValueError(f"'{event}' needs another {event.of} that does '{event.what}'; name one")
-        return self
+            is_aside = self.offset or self.parks or "pull_over" in before
+            if action.what == "pull_out" and not is_aside:
+                raise ValueError("the tested car pulls out, and is in its lane; write ego parked right")
 
     @model_validator(mode="after")
     def _has_whom_it_names(self) -> Self:
@@ -463,6 +488,25 @@ class Scene(Frozen):
     def has_script(self) -> bool:
         """Whether it tells the tested car what to do, or where to keep to."""
         return bool(self.actions) or self.offset is not None
+
+    @property
+    def room_behind(self) -> float:
+        """How many metres along the road a tested car starts that stands, so that those who come from behind
+        are on the road, too; 0 if nobody does."""
+        found = [0.0]
+        for each in self.actors:
+            comes = each.where == "behind"
+            gap = span(each.gap or each.lead or exactly(FROM_BEHIND * comes))
+            away = abs(gap.hi) if comes else -gap.lo
+            if each.where in ("behind", "lane", "far", "parked") and 0.0 < away < inf:
+                more = (span(each.count).hi - 1) * FROM_BEHIND
+                found.append(away + SIZES[each.kind].length + min(more, MOST_BEHIND) + SPARE)
+        return ceil(max(found) / 10.0) * 10.0
+
+    @property
+    def stands(self) -> bool:
+        """Whether the tested car stands at first."""
+        return bool(self.parks) or (self.speed is not None and span(self.speed).hi == 0)
 
     @property
     def has_others(self) -> bool:
@@ -627,6 +671,8 @@ def land_remark(scene: Scene) -> str:
 def parts_said(scene: Scene) -> Iterator[str]:
     """Yields the parts of a scene in words, such as 'a truck ahead'."""
     starts = [f"at {scene.speed} km/h"] if scene.speed else []
+    starts += [f"parked on the {scene.parks}"] if scene.parks else []
+    starts += [NUMBERS["station"].said.format(scene.station)] if scene.station else []
     if scene.offset:
         starts.append(NUMBERS["offset"].said.format(scene.offset))
     if scene.lane:

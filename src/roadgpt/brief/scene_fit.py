@@ -53,14 +53,16 @@ def fitted(brief: Brief, scene: Scene, limit: float, map_size: float | None = No
     if brief.map is not None or not any(needs):
         return brief
     speed = _most(scene.speed) / KMH if scene.speed else limit
-    before, stop = _until_stop(scene, speed, brief), speed**2 / 2 / STOPS
+    before, stop = _until_stop(scene, speed, brief) + _most(scene.station), speed**2 / 2 / STOPS
     lanes = scene.lanes_needed(brief.left_hand)
     if not brief.stretches:
         grip = G * (friction_of((*scene.surfaces, *brief.beside)) or 1.0)
         slides = before + speed**2 / 2 / min(STOPS, grip)
         side, far = map_size or brief.map_size, max(_until_met(scene, speed), slides)
         return _suited(brief, scene, lanes, speed, before, before + stop, side, far)
-    places = [place for place in brief.junctions if place.kind not in (*LANE_KINDS, *RAMPS)]
+    places = [each for each in brief.junctions if each.kind not in (*LANE_KINDS, *RAMPS)]
+    crosses = any(role.where == "crosswalk" for role in scene.actors)
+    places = places or [each for each in brief.junctions if each.kind == "crosswalk" and crosses]
     at_junction = bool(scene.turn) or any(
         comes_to_junction(role) or role.where in ("roundabout", "crosswalk") for role in scene.actors
     )
@@ -68,7 +70,6 @@ def fitted(brief: Brief, scene: Scene, limit: float, map_size: float | None = No
     behind = before - ROLLS * speed - JUNCTION  # what may be needed of the road behind a junction
     junctions = list(brief.junctions)
     if at_junction and places:
-        crosses = any(role.where == "crosswalk" for role in scene.actors)
         before = until = before if crosses else ROLLS * speed + SPARE
         junctions[junctions.index(places[0])] = _with_way(places[0], scene)
     else:  # the car goes on straight where it can, and what is longer than the first road happens there

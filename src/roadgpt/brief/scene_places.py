@@ -142,7 +142,7 @@ def with_places(brief: Brief, scene: Scene) -> Brief:
     crossed = any(role.where == "crosswalk" for role in scene.actors)
     junctions = list(brief.junctions)
     plain = [n for n, place in enumerate(junctions) if place.kind not in (*LANE_KINDS, *RAMPS)]
-    if plain and crossed and not any(place.crosswalk for place in junctions):
+    if plain and crossed and not any(place.crosswalk or place.kind == "crosswalk" for place in junctions):
         junctions[plain[0]] = junctions[plain[0]].model_copy(update={"crosswalk": True})
     if scene.signal and plain and not any(place.control == "lights" for place in junctions):
         first_open = next((n for n in plain if junctions[n].control is None), None)
@@ -180,9 +180,11 @@ def _lacking(brief: Brief, scene: Scene) -> Iterator[JunctionClause]:
         yield JunctionClause(kind="t_junction", take="straight", ways=(side, "straight"), control="priority")
         has_junction = True
     is_met = any(map(comes_to_junction, scene.actors))
-    if (is_met or scene.turn or scene.signal or "crosswalk" in wheres) and not has_junction:
+    if (is_met or scene.turn or scene.signal) and not has_junction:
         yield JunctionClause(kind="crossroads", take=scene.turn or (None if is_met else "straight"))
         kinds.append("crossroads")
+    elif "crosswalk" in wheres and not has_junction and "crosswalk" not in kinds:
+        yield JunctionClause(kind="crosswalk")
     if _most(scene, "junction") and not any(kind not in LANE_KINDS for kind in kinds):
         yield JunctionClause(kind="crossroads", take="straight")
 

@@ -339,7 +339,7 @@ def _of_same_road(known: Brief, road: Brief, place: JunctionClause) -> Brief:
     number of lanes along the road is left open as well if ``place``, which is between the parts, changes it.
     """
     says_against = road.against is not None or road.divided
-    keeps_lanes = place.kind in (*RAMPS, "lane_change") and road.lanes is None
+    keeps_lanes = place.kind in (*RAMPS, "lane_change", "crosswalk") and road.lanes is None
     return road.model_copy(
         update={
             "lanes": known.lanes if keeps_lanes else road.lanes,
@@ -439,7 +439,7 @@ def _behind(
         return max(before - 1, 1)
     if place.kind == "lane_gain":
         return min(before + 1, MOST_LANES)
-    if place.kind == "lane_change" or (place.kind in RAMPS and place.take == "main"):
+    if place.kind in ("lane_change", "crosswalk") or (place.kind in RAMPS and place.take == "main"):
         return before
     if place.kind == "merge":
         return _where_ramps_are(places[n:])

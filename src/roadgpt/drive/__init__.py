@@ -199,7 +199,7 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None, r
     from roadgpt.road import World
 
     if world.scene.has_script and not getattr(simulator, "heeds_scripts", False):
-        does = world.scene.actions[0] if world.scene.actions else f"starts {world.scene.offset} m aside"
+        does = (*world.scene.actions, f"starts {world.scene.offset} m aside")[0]
         raise UsageError(
             f"this simulator cannot make the tested car do what its scene tells ({does}); drive in the "
             "simulator mujoco"

@@ -26,7 +26,7 @@ FloatArray = NDArray[np.float64]
 Mishap = Literal["fell", "rolled", "crashed", "sank"]
 """What ends a drive beside the road: the car falls off a road that floats or off a bridge, rolls over, is
 stopped by a slope, or drives into water."""
-Ended = Literal["goal", "out_of_lane", Mishap, "stuck", "timeout", "collision"]
+Ended = Literal["goal", "over", "out_of_lane", Mishap, "stuck", "timeout", "collision"]
 COLUMNS = {
     "time": "s, since the start",
     "x": "m, centre of gravity",
@@ -207,7 +207,7 @@ class Drive:
 
         All steps count, except the last step if the car reached the goal or was stuck at that step: the SBFT
         competition checks for the goal first, then for motion, then for the lane."""
-        return max(len(self) - 1, 1) if self.ended in ("goal", "stuck") else len(self)
+        return max(len(self) - 1, 1) if self.ended in ("goal", "over", "stuck") else len(self)
 
     @cached_property
     def counts(self) -> NDArray[np.bool_]:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from roadgpt.drive.drive import COLUMNS, PEDALS, RETURNS, SCRIPT, Box, Ended, FloatArray, Mishap
 from roadgpt.drive.lane_position import POSE, MarkingMonitor
 from roadgpt.errors import SimulationError
-from roadgpt.road.road import GOAL, START
+from roadgpt.road.road import GOAL
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -38,10 +38,12 @@ class DriveMonitor:
         """Prepares the checks with the tolerances of the world. If the world sets ``lane_departure``, the
         front tyres are checked, too. With ``keep_driving``, the car may leave its lane; so may a car among
         others, which may also stand longer and take more time."""
-        self.start = min(START, road.length / 2)
+        self.start = world.start_on(road)
         """Station in metres where the car is placed."""
         self.limit = road.length / (SLOWEST_AMONG_OTHERS if among_others else SLOWEST) + SPARE
         """Time in seconds after which the drive ends."""
+        self.is_over = False
+        """Whether nothing is left to happen, and the car stays where it is."""
         self.touched: float | None = None
         """Time in seconds at which the car first touched somebody; None if it did not."""
         self._length, self._patience = road.length, STUCK_AMONG_OTHERS if among_others else STUCK_TIME
@@ -50,10 +52,6 @@ class DriveMonitor:
         self._is_watched = world.limits.lane_departure and not keep_driving
         self._tyres: MarkingMonitor | None = None
         self.keep_to(road, world, box)
-        # The end of the lane's inner edge; with one lane in each direction it is that of the centre line.
-        profile = world.profile_of(road)
-        left, right = profile.lane(road.length)
-        self._end = np.asarray(road.at(road.length, right if profile.left_hand else left)).tolist()
         self._since, self._from, self._free_until = 0.0, (math.nan, math.nan), -math.inf
 
     def ended(self, row: FloatArray, time: float, mishap: Mishap | None) -> Ended | None:
@@ -73,6 +71,8 @@ class DriveMonitor:
         # Within one step the competition checks for the goal, then for motion, then for the lane.
         if self.is_at_goal(x, y, s):
             return "goal"
+        if self.is_over:
+            return "over"
         if self.is_stuck(x, y, time):
             return "stuck"
         is_free = time <= self._free_until + ROUNDING
@@ -85,6 +85,10 @@ class DriveMonitor:
     def keep_to(self, road: "Road", world: "World", box: Box) -> None:
         """Sets the road whose driven lane is the one that the car is to keep to."""
         self._tyres = MarkingMonitor.for_tyres(road, world, box) if self._is_watched else None
+        # The end of the lane's inner edge; with one lane in each direction it is that of the centre line.
+        profile = world.profile_of(road)
+        left, right = profile.lane(road.length)
+        self._end = np.asarray(road.at(road.length, right if profile.left_hand else left)).tolist()
 
     def heed(self, by: str | None, has_end: bool, time: float, dt: float) -> None:
         """Heeds whether the script has the wheel or the pedals, in the step that begins: then the car may

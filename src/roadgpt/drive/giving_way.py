@@ -59,7 +59,6 @@ class GivingWay:
     def __init__(self, road: "Road", world: "World", line: DrivingLine) -> None:
         network, legs = network_of(road, world), legs_of(road, world)
         lanes = lanes_of(network)
-        crossed = {arm.end: arm.crosswalk for junction in network.junctions for arm in junction.arms}
         self._junctions: list[tuple[float, float, FloatArray]] = []
         """For each junction where the car gives way the station of the line, the speed in m/s at which people
         drive through, and the ``_ways`` of others."""
@@ -79,15 +78,11 @@ class GivingWay:
                 begin, _, end = road.starts[k : k + 3]
                 self._changes.append((begin, end, line.offset[line.place(end)[0]]))
         self._line, self._beside = line, 0.0
-        near, far = CROSSWALK[0], sum(CROSSWALK)
-        begins = [way.start - far for way in road.passages if crossed[way.arrival]]
-        begins += [way.end + near for way in road.passages if crossed[way.departure]]
         profile, self._crosswalks = world.profile_of(road), list[tuple[float, FloatArray]]()
-        for begin in sorted(begins):
-            s = begin + CROSSWALK[1] / 2
+        for s in (each.s for each in road.crosswalks):
             edges, own = profile.edges(s), line.offset[line.place(s)[0]]
             place = (*road.at(s)[:2], road.heading(s), edges.left, edges.right, own)
-            self._crosswalks.append((begin, np.array(place, float)))
+            self._crosswalks.append((s - CROSSWALK[1] / 2, np.array(place, float)))
         self._waited, self._goes, self._seen = 0.0, False, np.empty((0, 6))
 
     def lines(self, view: View) -> list[float]:

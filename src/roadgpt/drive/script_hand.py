@@ -24,17 +24,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roadgpt.brief.scene import AROUND, CAR, Event
+from roadgpt.brief.scene import AROUND, CAR, Event, Mark
 from roadgpt.drive.drive import PEDALS, SCRIPT, Box, LaneMove
 from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.driving_line import BEFORE_LINE, pedals_for
 from roadgpt.drive.keeping_distance import HALTED, LEAST_BRAKE, ROLLS
+from roadgpt.drive.shunt import Shunt
 from roadgpt.drive.view import View
 from roadgpt.errors import SceneError
+from roadgpt.geometry import wrap_angle
 from roadgpt.language.names import Side
 from roadgpt.language.table import MANEUVERS, THINGS, VEHICLES
 from roadgpt.network.line import driven_line
-from roadgpt.road.road import START
 from roadgpt.traffic.course import Course, Met
 from roadgpt.traffic.lateral import Lateral, Offsets
 from roadgpt.traffic.longitudinal import Longitudinal
@@ -54,6 +55,7 @@ FIRM, LASTS = 3.5, 0.2  # m/s^2, s: what cruise control may not brake with (ISO 
 PULL = 2.0  # 1/s, acceleration per speed error
 AHEAD = 1.5  # m/s, by which the planned speed may be ahead of the car's
 REACHED = 0.1  # m/s
+HOLDS = 0.1  # share of full braking, with which a driver only holds its speed on a slope
 LONGER, SETTLES = 1.2, 0.5  # share and s, by which a change of speed may last longer than it is told to
 STEADY = 0.5  # m/s, of changes of speed that are too small to be compared
 NEAREST = 0.3  # m before the place where it stops
@@ -68,6 +70,15 @@ EDGE = 0.2  # m, from the edge of the shoulder, or the road, where it pulls over
 PASSED = {"overtake": 10.0, "pass": 2.0}  # m, behind its rear, where it goes back
 
 
+ERRORS = ("run_light", "run_sign")
+"""What it does although the driver brakes."""
+EMERGENCY, CLOSE, SOON, SIDEWAYS = 0.6, 8.0, 3.0, 15.0
+"""Share of full braking from which on the driver's counts there, if somebody is so near: m, s, m aside."""
+EARLY_ERROR = 3.0  # s before a line that it runs over, or a corner that it cuts
+LANE = 3.5  # m, usual width
+CORNER = math.radians(25.0)  # less is no turn at a junction
+
+
 class ScriptHand:
     """What a scene tells the tested car to do, during one drive."""
 
@@ -80,6 +91,9 @@ class ScriptHand:
         self._maneuvers, whats = list[Maneuver](), [each.what for each in world.scene.actions]
         self._places = dict[int, float]()
         """Where the car stands that stops before a place: the station of its front along the line."""
+        self._stretches = dict[int, tuple[float, float, float]]()
+        """Where it errs: from where to where along the line, and to which side."""
+        self._shunt: Shunt | None = None
         self._ends = dict[int, float]()
         """Where the front of the car is when it has changed lanes before a place."""
         for number, action in enumerate(world.scene.actions):
@@ -89,8 +103,8 @@ class ScriptHand:
         self._lateral, self.moves = Lateral(), tuple[LaneMove, ...]()
         self._lane = 0.0
         """How far the lane to which it goes back is to the left of that in which it was at first."""
-        if world.scene.offset is not None:
-            self.moves = (LaneMove(-2.0, -1.0, drawn(world.scene, rng)["offset"]),)
+        if world.scene.offset is not None or world.scene.parks:
+            self.moves = (LaneMove(-2.0, -1.0, self._aside_at_first(road, rng)),)
             road = road.with_profile(world.profile_of(road).moved(*self.moves[0]))
         self._follow(road)
         self._begun, self._phases = 0, list[Phase]()
@@ -98,12 +112,19 @@ class ScriptHand:
         """When the phase began, the speed that it has planned for now, and that at its begin."""
         self._firm = 0.0
         """For how many seconds the driver has braked firmly."""
-        self._stands = world.scene.speed is not None and world.first_speed == 0
+        self._stands = world.scene.stands
         self._said, self._skipped = list[str](), list[str]()
         self._did_it = dict[int, Event]()
         """The events of maneuvers that have begun, or never will."""
         self._around = ""
         """Who is overtaken or passed."""
+
+    def _aside_at_first(self, road: "Road", rng: np.random.Generator) -> float:
+        """Returns how far to the left of its lane it is at first."""
+        scene, s = self._world.scene, self._world.start_on(road)
+        if scene.parks is None:
+            return drawn(scene, rng)["offset"]
+        return offset_of("parked", scene.parks, s, road, self._world, self._box.width)
 
     def _follow(self, road: "Road") -> None:
         """Takes a road whose driven lane is the one that the car is to keep to."""
@@ -139,8 +160,10 @@ class ScriptHand:
         """Finds the place of a maneuver that the scene names by a part of the route."""
         each, line = self._maneuvers[number], self._line
         mark, n = each.action.at, each.n
+        if each.what in (*ERRORS, "cut_corner"):
+            self._stretches[number] = self._stretch(each)
         if "distance" in n:
-            n["station"] = line.from_road(min(START, self.road.length / 2)) + n.pop("distance")
+            n["station"] = line.from_road(self._world.start_on(self.road)) + n.pop("distance")
         if mark is None or mark.what:
             return
         first, last = stretch_of(mark, self.road, line)
@@ -154,6 +177,39 @@ class ScriptHand:
         at = line.from_road(ways[0].line) if ways and mark.of == "junction" else first
         self._places[number] = at - BEFORE_LINE
 
+    def _stretch(self, maneuver: Maneuver) -> tuple[float, float, float]:
+        """Returns where along the line it errs, up to where, and to which side it cuts a corner."""
+        line, road, what = self._line, self.road, maneuver.what
+        found = list[tuple[float, float, float]]()
+        for way in road.passages:
+            turn = float(wrap_angle(road.heading(way.end) - road.heading(way.start)))
+            if what == "cut_corner" and abs(turn) > CORNER:
+                found.append((way.start, way.end, math.copysign(1.0, turn)))
+            elif way.control in {"run_light": ("lights",), "run_sign": ("stop", "yield")}.get(what, ()):
+                found.append((way.line, way.end, 0.0))
+        if what == "cut_corner" and not found:
+            start, end = stretch_of(Mark(word="in", of="turn", number=1), road, line)
+            turn = float(wrap_angle(road.heading(line.to_road(end)) - road.heading(line.to_road(start))))
+            return start, end, math.copysign(1.0, turn)
+        if not found:
+            lacks = {"run_light": "traffic lights", "run_sign": "sign to give way at"}[what]
+            raise SceneError(f"the tested car {MANEUVERS[what].said}, and the road has no {lacks}")
+        start, end, side = found[0]
+        return line.from_road(start), line.from_road(end), side
+
+    def _through(self, maneuver: Maneuver, start: float, end: float, side: float) -> list[Phase]:
+        """Returns what it does where it errs: it goes on as fast as it is, or cuts the corner."""
+        if maneuver.what in ERRORS:
+            return [Phase(self._speed.v, CHANGE, until="beyond")]
+        by, v = side * maneuver.n.get("shift", LANE / 2), max(self._speed.v, 1.0)
+        middle = ((start + end) / 2 - self._front) / v
+        slides = max(min(middle, math.pi / 2 * abs(by) / LATERAL["drift"]), math.sqrt(abs(by)))
+        return [
+            Phase(to=by, slides=slides, until="there"),
+            Phase(until="beyond"),
+            Phase(to=0.0, slides=slides, until="there"),
+        ]
+
     @property
     def _front(self) -> float:
         return self._course.s + self._box.length / 2
@@ -165,13 +221,49 @@ class ScriptHand:
         self._go_on(view)
         self._begin_in_time(view)
         if not self._phases and not (self._stands and not self._begun):
+            if self._is_left_parked and not self.is_over:  # its driver pulls out
+                self._move(self._back(), LATERAL["pull_out"])
             return command, None
+        if self._phases and self._phases[0].until == "shunted" and self._shunt is not None:
+            return self._shunt.command(view), SCRIPT
         steer, throttle, brake = command
-        steers = self._hands == "wheel"
+        steers = self._hands != "pedals"
+        if self._errs and not (brake > EMERGENCY and self._meets_somebody(view)):
+            brake = 0.0
         if not steers or (self._phases and self._phases[0].goal is not None) or self._holds:
             own_throttle, own_brake = self._pedals(view)
-            throttle, brake = own_throttle if brake <= own_brake else 0.0, max(brake, own_brake)
+            throttle, brake = own_throttle if brake <= own_brake + HOLDS else 0.0, max(brake, own_brake)
+            brake = 0.0 if throttle else brake
         return (self._steered(view) if steers else steer, throttle, brake), SCRIPT if steers else PEDALS
+
+    @property
+    def _errs(self) -> bool:
+        """Whether it drives past a light or a sign before which its driver stops."""
+        return bool(self._begun and self._phases) and self._maneuvers[self._begun - 1].what in ERRORS
+
+    def _meets_somebody(self, view: View) -> bool:
+        """Whether somebody is close before the car, or about to come from a side."""
+        if self._traffic is None:
+            return False
+        x, y = (self._traffic.at(view.time)[:, :2] - (view.x, view.y)).T
+        cos, sin = math.cos(view.heading), math.sin(view.heading)
+        ahead, aside = x * cos + y * sin, y * cos - x * sin
+        near = (ahead > 0.0) & (ahead < CLOSE + SOON * view.speed) & (np.abs(aside) < SIDEWAYS)
+        return bool(near.any())
+
+    @property
+    def _is_left_parked(self) -> bool:
+        """Whether it has done everything, and is still parked as at first."""
+        is_done = self._begun == len(self._maneuvers) and not self._phases
+        return is_done and self._world.scene.parks is not None and len(self.moves) == 1
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the drive ends, because it has done everything and the car stays where it is parked, or has
+        turned round."""
+        if self._begun == len(self._maneuvers) and not self._phases and self._shunt is not None:
+            return self._maneuvers[-1].what == "u_turn"
+        return self._is_left_parked and all(each.what != "release" for each in self._maneuvers)
 
     @property
     def _holds(self) -> bool:
@@ -253,24 +345,12 @@ class ScriptHand:
                 self._triggers.events = self._traffic.events
             if {"gap", "headway", "ttc"} & {*each.n}:
                 self._triggers.met = self._met()[1]
-            before = None if not number else math.inf if self._phases else 0.0
-            if each.what in AROUND and each.is_open:
-                wait = self._until_around(each, before)
-            elif number in self._ends:
-                by = float(self._line.width_at(self._course.s))
-                needs = self._long(by, self._sideways(each, by))
-                wait = 0.0 if self._ends[number] - self._front <= needs else math.inf
-            elif number in self._places:
-                left = self._places[number] - self._front
-                if left < 0:
-                    self._did_it[number] = Event(CAR, each.said, why="it had passed the place before")
-                    self._skipped.append(f"{NEVER} {self._did(number)}: {self._did_it[number].why}")
-                    self._begun, self._phases = number + 1, []
-                    continue
-                wait = 0.0 if self._speed.v**2 / 2 / max(left, NEAREST) >= self._decel(each) else math.inf
-            else:
-                wait = self._triggers.wait(each, before)
-            if wait >= view.dt:
+            if number in self._places and self._places[number] < self._front:
+                self._did_it[number] = Event(CAR, each.said, why="it had passed the place before")
+                self._skipped.append(f"{NEVER} {self._did(number)}: {self._did_it[number].why}")
+                self._begun, self._phases = number + 1, []
+                continue
+            if self._wait(number, each) >= view.dt:
                 return
             self._begun += 1
             if self._is_refused:
@@ -283,6 +363,11 @@ class ScriptHand:
             self._lateral.t, self._lateral.slide = self._aside(view), None
             if each.what in (*AROUND, "change_lane", "pull_out", "pull_over"):
                 self._go_aside(each, view)
+            elif each.what in ("reverse", "u_turn"):
+                self._shunt = Shunt(self.road, self._world, self._box, each, view)
+                self._phases = [Phase(0.0, STOP, until="speed"), Phase(until="shunted")]
+            elif number in self._stretches:
+                self._phases = self._through(each, *self._stretches[number])
             else:
                 self._phases = [] if each.what == "release" else self._triggers.phases(each)
             rest = self._maneuvers[self._begun :]
@@ -291,6 +376,23 @@ class ScriptHand:
                 self._phases.append(Phase(lasts=math.inf))
             if self._phases:
                 self._enter(view)
+
+    def _wait(self, number: int, maneuver: Maneuver) -> float:
+        """Returns in how many seconds a maneuver begins, as far as it can be seen now."""
+        v, before = self._speed.v, None if not number else math.inf if self._phases else 0.0
+        if maneuver.what in AROUND and maneuver.is_open:
+            return self._until_around(maneuver, before)
+        if number in self._places:
+            left = self._places[number] - self._front
+            return 0.0 if v**2 / 2 / max(left, NEAREST) >= self._decel(maneuver) else math.inf
+        if number in self._ends:
+            by = float(self._line.width_at(self._course.s))
+            left = self._ends[number] - self._front
+            return 0.0 if left <= self._long(by, self._sideways(maneuver, by)) else math.inf
+        if number in self._stretches and maneuver.is_open:
+            early = max(v * EARLY_ERROR, self._long(LANE, LATERAL["drift"]) / 2)
+            return 0.0 if self._stretches[number][0] - self._front <= early else math.inf
+        return self._triggers.wait(maneuver, before)
 
     def _tell(self, word: str, maneuver: Maneuver, view: View) -> None:
         number = self._maneuvers.index(maneuver)
@@ -429,6 +531,10 @@ class ScriptHand:
             _, met, _ = self._met(self._around)
             rear = self._course.s - self._box.length / 2 - met.s - met.length / 2
             return met is self._nobody or rear > PASSED[self._maneuvers[self._begun - 1].what]
+        if phase.until == "shunted":
+            return self._shunt is not None and self._shunt.is_done
+        if phase.until == "beyond":
+            return self._front > self._stretches[self._begun - 1][1]
         if phase.until != "speed" or phase.goal is None:
             return False
         v, least = self._speed.v, HALTED if phase.goal == 0 else REACHED

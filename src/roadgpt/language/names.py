@@ -10,7 +10,8 @@ Where = Literal["ahead", "behind", "lane", "far", "oncoming", "crossing", "parke
     "crosswalk", "beside", "roundabout"]
 What = Literal["keep", "brake", "stop", "speed", "follow", "open_gap", "swerve", "drift", "cut_in",
     "cut_out", "change_lane", "overtake", "merge", "pull_out", "turn_off", "turn_in", "turn_across", "cross",
-    "run_light", "run_sign", "reverse", "wrong_way", "wait", "creep", "pass", "pull_over", "release"]
+    "run_light", "run_sign", "reverse", "wrong_way", "wait", "creep", "pass", "pull_over", "u_turn",
+    "cut_corner", "release"]
 Flow = Literal["light", "medium", "dense"]
 WeatherKind = Literal["fog", "rain", "hail", "dust"]
 Light = Literal["night", "low_sun"]
@@ -25,7 +26,7 @@ Slope = Literal["up", "down", "flat", "nearly_flat", "gently_up", "gently_down",
     "steeply_down"]
 Bump = Literal["crest", "dip"]
 JunctionKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout", "junction", "merge",
-    "diverge", "lane_drop", "lane_gain", "lane_change"]
+    "diverge", "lane_drop", "lane_gain", "lane_change", "crosswalk"]
 Control = Literal["priority", "yield", "stop", "lights", "none"]
 IslandSize = Literal["mini", "normal", "large"]
 Take = Literal["left", "right", "straight", "back", "sharp_left", "sharp_right", "slight_left",
@@ -40,4 +41,4 @@ Face = Literal["front", "rear", "left", "right"]
 PlainKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout"]
 MapJunctionKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout", "junction"]
 RampKind = Literal["merge", "diverge"]
-LaneKind = Literal["lane_drop", "lane_gain", "lane_change"]
+LaneKind = Literal["lane_drop", "lane_gain", "lane_change", "crosswalk"]

@@ -132,7 +132,7 @@ class _RouteGrowth:
             self._pass_junction(number, place, is_level)
         elif isinstance(place, LanesChangeDesign):  # another road continues that of arrival, with other lanes
             road = self._road(number, self._end(), (True, is_level))
-            self._continue(self.passed[-1], road, continued_lanes(place, *around))
+            self._continue(self.passed[-1], road, continued_lanes(place, *around), place.kind == "crosswalk")
             if place.kind == "lane_change":
                 self.shifts[road] = 1 if place.side == "left" else -1
         else:
@@ -140,8 +140,11 @@ class _RouteGrowth:
             road = self._road(number, made.where_it_goes_on(), (True, is_level))
             self.passed += [*made.build(road), road]
 
-    def _continue(self, before: int, road: int, lanes: tuple[tuple[int, int], ...]) -> None:
-        self.builder.continuations.append(Continuation(RoadEnd(before, "end"), RoadEnd(road, "start"), lanes))
+    def _continue(
+        self, before: int, road: int, lanes: tuple[tuple[int, int], ...], crosswalk: bool = False
+    ) -> None:
+        ends = RoadEnd(before, "end"), RoadEnd(road, "start")
+        self.builder.continuations.append(Continuation(*ends, lanes, crosswalk))
         self.passed.append(road)
 
     def _add_turn_lanes(self, junction: JunctionDesign) -> None:

@@ -76,6 +76,8 @@ def strokes(network: Network) -> tuple[PaintedStroke, ...]:
         found += _kerb_lines(network, paved, junctions[0].node[2])
         for junction in junctions:
             found += [stroke for arm in junction.arms for stroke in _of_arm(network, junction, arm)]
+    for each in network.continuations:
+        found += _stripes(network.road(each.before.road), each.before.contact) if each.crosswalk else ()
     return tuple(found)
 
 
@@ -157,8 +159,7 @@ def _raised(points: Array, height: float) -> Array:
 def _of_arm(network: Network, junction: Junction, arm: Arm) -> Iterator[PaintedStroke]:
     """Yields the stripes of a crosswalk, and the stop line of an arm or the blocks of its give-way line."""
     if arm.crosswalk:
-        for stripe in _stripes(network.road(arm.end.road), arm.end.contact):
-            yield PaintedStroke("crosswalk", STRIPE, stripe)
+        yield from _stripes(network.road(arm.end.road), arm.end.contact)
     line = line_to_stop_at(network, junction, arm)
     if line is not None and arm.control != "yield":
         yield PaintedStroke("stop", STOP_LINE, line)
@@ -212,7 +213,8 @@ def line_across(network: Network, arm: Arm) -> tuple[float, float, float]:
     return s, member.begin_towards(arm.end.contact, s), float(edges.left if is_left else edges.right)
 
 
-def _stripes(member: NetworkRoad, contact: Contact) -> Iterator[Array]:
+def _stripes(member: NetworkRoad, contact: Contact) -> Iterator[PaintedStroke]:
+    """Yields the stripes of a crosswalk at an end of a road."""
     near, length = CROSSWALK
     away = np.minimum(np.array([near, near + length]), member.road.length)
     s = member.road.length - away if contact == "end" else away
@@ -221,7 +223,7 @@ def _stripes(member: NetworkRoad, contact: Contact) -> Iterator[Array]:
     count = max(1, round((left - right) / (2 * STRIPE)))
     for n in range(count):
         t = right + (left - right) * (n + 0.5) / count
-        yield member.road.at(s, np.full(2, t))
+        yield PaintedStroke("crosswalk", STRIPE, member.road.at(s, np.full(2, t)))
 
 
 def _around(network: Network, junction: Junction, arm: Arm, ring: Roundabout) -> Array | None:

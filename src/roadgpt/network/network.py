@@ -125,12 +125,14 @@ class Connection:
 
 @dataclass(frozen=True)
 class Continuation:
-    """Two roads joined without a junction, where the number of lanes or the lane of the route changes."""
+    """Two roads joined without a junction, where the number of lanes or the lane of the route changes, or
+    people cross."""
 
     before: RoadEnd
     after: RoadEnd
     lanes: tuple[tuple[int, int], ...]
     """Pairs of lane ids that continue each other: of the road ``before``, and of the road ``after``."""
+    crosswalk: bool = False  # whether there is a crosswalk at the end ``before``
 
 
 @dataclass(frozen=True)
@@ -268,7 +270,8 @@ class Network:
     @cached_property
     def crossed(self) -> frozenset[RoadEnd]:
         """The ends of roads at which there is a crosswalk."""
-        return frozenset(arm.end for each in self.junctions for arm in each.arms if arm.crosswalk)
+        at_arms = (arm.end for each in self.junctions for arm in each.arms if arm.crosswalk)
+        return frozenset((*at_arms, *(each.before for each in self.continuations if each.crosswalk)))
 
     @cached_property
     def connection_of(self) -> dict[int, tuple[Junction, Connection]]:

@@ -18,7 +18,7 @@ from roadgpt.geometry.elevation import Cubic, closed
 from roadgpt.language.names import Control
 from roadgpt.network.lane_along import LaneAlong, change_windows, cubics_at, lane_along
 from roadgpt.network.lane_line import along_lanes, continue_each_other
-from roadgpt.network.markings import STOP_LINE, line_before
+from roadgpt.network.markings import CROSSWALK, STOP_LINE, line_before
 from roadgpt.network.network import Arm, Junction, Leg, Network, NetworkRoad, RoadEnd, network_to_json
 from roadgpt.network.paved import Area, paved_by
 from roadgpt.network.stretch import joined_heights, joined_plans, turned
@@ -73,6 +73,14 @@ class Passage(NamedTuple):
     @property
     def _arm(self) -> Arm:
         return next(arm for arm in self.entered.arms if arm.end == self.arrival)
+
+
+class Crosswalk(NamedTuple):
+    """A crosswalk on the way of a route."""
+
+    s: float  # station in metres of its middle
+    passage: Passage | None  # the junction or roundabout at which it lies; None away from these
+    is_behind: bool  # whether it lies behind it
 
 
 def _place(network: Network, leg: Leg) -> tuple[str, int] | None:
@@ -273,6 +281,20 @@ class Route(Road):
             for own in ways
             if own
         )
+
+    @cached_property
+    def crosswalks(self) -> tuple[Crosswalk, ...]:
+        """The crosswalks on the way, in driving order."""
+        away, crossed, found = CROSSWALK[0] + CROSSWALK[1] / 2, self.network.crossed, list[Crosswalk]()
+        for way in self.passages:
+            found += [Crosswalk(way.start - away, way, False)] * (way.arrival in crossed)
+            found += [Crosswalk(way.end + away, way, True)] * (way.departure in crossed)
+        for each in self.network.continuations if crossed else ():
+            for (_, one), (start, two) in pairwise(self.roads):
+                before, after = (one, two) if each.before.road == one.id else (two, one)
+                if each.crosswalk and (each.before.road, each.after.road) == (before.id, after.id):
+                    found.append(Crosswalk(start - (away if before is one else -away), None, False))
+        return tuple(sorted(found, key=lambda each: each.s))
 
     @property
     def has_way(self) -> bool:

@@ -309,7 +309,7 @@ def _is_ramp(place: PlaceDesign | None, kind: str) -> bool:
 
 def _behind(number: int, place: PlaceDesign, before: LanesDesign) -> LanesDesign:
     if isinstance(place, LanesChangeDesign):
-        step = {"lane_drop": -1, "lane_gain": 1, "lane_change": 0}[place.kind]
+        step = {"lane_drop": -1, "lane_gain": 1}.get(place.kind, 0)
         count = plural(before.forward + step, "lane")
         if not 1 <= before.forward + step <= MOST_LANES:
             raise UsageError(

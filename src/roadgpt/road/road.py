@@ -122,6 +122,11 @@ class Road:
         return ()
 
     @property
+    def crosswalks(self) -> tuple[Any, ...]:
+        """The crosswalks on the way, each a ``roadgpt.network.Crosswalk``, in driving order: none."""
+        return ()
+
+    @property
     def has_way(self) -> bool:
         """Whether it is known where to drive; False only for a map through which no route was asked for."""
         return True

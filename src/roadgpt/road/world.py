@@ -23,15 +23,16 @@ from pydantic import (
     model_validator,
 )
 
-from roadgpt.brief.amount import Amount, Frozen
+from roadgpt.brief.amount import Amount, Frozen, exactly
 from roadgpt.brief.beside import friction_of, slipperiest
 from roadgpt.brief.plan import read_scene, scene_plan
 from roadgpt.brief.scene import LAND_KINDS, Scene, with_named
 from roadgpt.brief.visibility import weather_drawn
 from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP
-from roadgpt.errors import BriefError, UsageError
+from roadgpt.errors import BriefError, SceneError, UsageError
 from roadgpt.ground.given import BESIDE, NAME, GivenGround
 from roadgpt.language.names import CentreLine
+from roadgpt.road.road import SHORTEST_DRIVE, START
 from roadgpt.settings import ROWS, field, span
 
 if TYPE_CHECKING:
@@ -376,6 +377,8 @@ class World(BaseModel):
         for air in self.scene.weather:
             scene = scene.with_weather(air.kind, air.amount)
         kept = self.scene.model_fields_set - {"weather"} if is_given else set[str]()
+        if scene.stands and scene.station is None and (room := scene.room_behind):
+            scene = scene.model_copy(update={"station": exactly(room)})
         said = {name: getattr(scene, name) for name in scene.model_dump(exclude_defaults=True)}
         said = {name: each for name, each in said.items() if name not in kept}
         return self.changed(scene=self.scene.model_copy(update=said)) if said else self
@@ -432,7 +435,19 @@ class World(BaseModel):
     def first_speed(self) -> float:
         """The speed in m/s at which the tested car starts to roll among others: that of the scene, or the
         middle of its range, else the speed limit."""
-        return self.limits.speed_limit if self.scene.speed is None else _middle(self.scene.speed) / KMH
+        if self.scene.speed is None:
+            return 0.0 if self.scene.parks else self.limits.speed_limit
+        return _middle(self.scene.speed) / KMH
+
+    def start_on(self, road: "Road") -> float:
+        """Returns the station in metres of the tested car's centre of gravity at the start. Raises SceneError
+        if the scene says a place that the road does not have."""
+        if self.scene.station is None:
+            return min(START, road.length / 2)
+        at = max(_middle(self.scene.station), START)
+        if at > road.length - SHORTEST_DRIVE:
+            raise SceneError(f"the tested car starts at {at:.0f} m, and the road ends at {road.length:.0f} m")
+        return at
 
     @property
     def driven_speed(self) -> float:

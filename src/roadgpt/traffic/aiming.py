@@ -16,7 +16,7 @@ from roadgpt.brief.scene import STRUCK
 from roadgpt.errors import SceneError
 from roadgpt.geometry.boxes import separation, touching, turned
 from roadgpt.network.line import driven_line
-from roadgpt.road.road import GOAL, START
+from roadgpt.road.road import GOAL
 from roadgpt.traffic.actor import HEADING, SIZES, STEP, Size, TestedCar, X, Y
 from roadgpt.traffic.performer import Performer
 from roadgpt.traffic.places import SIGN
@@ -45,7 +45,7 @@ def steady(
     """Yields, every STEP seconds, a tested car that keeps to the middle of its lane and to the speed of the
     scene. The middle of its box, of a ``size``, is ``ahead`` metres before its centre of gravity."""
     way, v = driven_line(road, world), world.first_speed
-    first = way.from_road(min(START, road.length / 2))
+    first = way.from_road(world.start_on(road))
     for n in count():
         time = n * STEP
         s = way.to_road(first + v * time)

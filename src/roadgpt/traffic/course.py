@@ -12,12 +12,13 @@ AHEAD = (0.0, 1.0, 2.0, 3.0)  # s, at which bends count for a movement sideways
 
 class Met(NamedTuple):
     """Whom somebody meets, as it is seen from its lane: the station of its middle and its speed in metres and
-    seconds, and its size."""
+    seconds, its size, and how far its middle is to the left of the lane's."""
 
     s: float
     v: float
     length: float
     width: float
+    t: float = 0.0
 
 
 class Meeting(NamedTuple):
@@ -50,6 +51,8 @@ class Course:
     shift: float = 0.0
     """From a station of its way to that of the lane beside it."""
     meeting: Meeting | None = None
+    backs: bool = False
+    """Whether it drives there backwards."""
 
     @property
     def along(self) -> float:

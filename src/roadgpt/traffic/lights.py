@@ -19,7 +19,6 @@ from roadgpt.geometry import wrap_angle
 from roadgpt.language.names import Shown
 from roadgpt.network import network_of
 from roadgpt.network.network import Arm, Junction, Network, RoadEnd
-from roadgpt.road.road import START
 from roadgpt.traffic.following import GREEN, RED, YELLOW
 from roadgpt.traffic.maneuver import drawn
 
@@ -125,7 +124,7 @@ def lights_of(road: "Road", world: "World", seed: int) -> Lights:
             lights.show_green(passage.entered, end, passage.start / speed)
     lit = next((each for each in road.passages if each.control == "lights"), None)
     if signal is not None and lit is not None:
-        comes = (lit.start - min(START, road.length / 2)) / speed
+        comes = (lit.start - world.start_on(road)) / speed
         turns = turns_at(signal, seed)
         if turns is None:
             lights.show(lit.entered, lit.arrival, comes, WHEN_IT_COMES[signal.shows])

@@ -16,6 +16,7 @@ ROLL = 4.0  # s, after which the first action begins whose begin the scene leave
 FAST = 250.0 / 3.6  # m/s, the most that a scene can ask for
 BRAKE, STOP = (MANEUVERS[what].usual or 0.0 for what in ("brake", "stop"))
 CHANGE = 2.0  # m/s^2
+REVERSING = (MANEUVERS["reverse"].usual or 0.0) / 3.6  # m/s
 TURNING = 20.0 / 3.6  # m/s, of vehicles that turn at a junction, at most
 LATERAL: Mapping[What, float] = {
     "swerve": 0.5, "drift": 0.5, "cut_in": 1.5, "cut_out": 1.5, "change_lane": 1.0, "overtake": 1.5,
@@ -109,6 +110,6 @@ class Phase(NamedTuple):
     slides: float = 0.0
     lasts: float | None = None
     """After how many seconds it ends at the latest; the speed that is reached by then stays."""
-    until: Literal["speed", "there", "passed", "met"] | None = None
+    until: Literal["speed", "there", "passed", "met", "shunted", "beyond"] | None = None
     follows: float | None = None
     """The headway in seconds that it keeps to whom it meets."""

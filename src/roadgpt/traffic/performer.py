@@ -69,16 +69,16 @@ class Performer:
     def state(self) -> tuple[float, ...] | None:
         """Returns its state; None while it is not there: its box is not yet, or no longer, on its way."""
         v, slope, course = self.longitudinal.v, self.lateral.slope, self.course
-        is_behind = self.role.where == "behind" or bool(self.role.hits)
+        is_behind = self.role.where in ("behind", "parked") or bool(self.role.hits)
         is_behind &= not self.placed.stage.world.first_speed
         if not self.is_there or not course.is_there(
             is_behind, v > 0 and len(self.shown) < len(self.maneuvers)
         ):
             return None
         x, y, z, heading = course.way.pose(course.s, self.lateral.t)
-        turned = math.atan(slope)
-        heading += turned if course.forward > 0 else math.pi - turned
-        return x, y, z, heading, math.copysign(math.hypot(v, v * slope), v)
+        turned, turns = math.atan(slope), math.pi * course.backs
+        heading += turns + (turned if course.forward > 0 else math.pi - turned)
+        return x, y, z, heading, math.copysign(math.hypot(v, v * slope), v) * (-1 if course.backs else 1)
 
     def move(self, time: float, met: Met) -> None:
         """Moves it from a time to STEP later."""
@@ -139,7 +139,8 @@ class Performer:
         if not self.begun or self.state() is None:
             return
         maneuver, meeting, met = self.maneuvers[self.begun - 1], self.course.meeting, self.triggers.met
-        if meeting and not self.course.is_along and maneuver.is_open and maneuver.what in ON_ITS_WAY:
+        is_on_its_way = self.course.backs or maneuver.what in ON_ITS_WAY
+        if meeting and not self.course.is_along and maneuver.is_open and is_on_its_way:
             left = meeting.own - self.course.s - self.size.length / 2
             if left > met.width or met.s - met.length / 2 > meeting.its:
                 return

@@ -22,7 +22,7 @@ from roadgpt.traffic.course import Course, Meeting, Met
 from roadgpt.traffic.following import time_over
 from roadgpt.traffic.lateral import SHARPEST, Lateral, Offsets
 from roadgpt.traffic.longitudinal import EASY, Longitudinal, reach
-from roadgpt.traffic.maneuver import LATERAL, ROLL, TURNING, Maneuver, drawn
+from roadgpt.traffic.maneuver import LATERAL, REVERSING, ROLL, TURNING, Maneuver, drawn
 from roadgpt.traffic.places import stretch_of
 from roadgpt.traffic.traffic import Aiming, Stage
 from roadgpt.traffic.triggers import LAST, Triggers
@@ -80,7 +80,7 @@ class Placing:
         """Its first maneuver, or that behind those in which it keeps its speed."""
         self.first = self.lead.what if self.lead else None
         self.cue = self.lead.n if self.lead else dict[str, float]()
-        crosses = where == "beside" and not {"cross", "turn_in"}.isdisjoint(self.whats)
+        crosses = where == "beside" and not {"cross", "turn_in", "reverse"}.isdisjoint(self.whats)
         crosses |= where in CROSSINGS
         is_along = where in (*ALONG, "parked", "beside") and role.goes != "turn_across" and not crosses
         is_against = where == "oncoming" or self.first == "wrong_way"
@@ -88,6 +88,7 @@ class Placing:
         faces = forward < 0 and bool(self.first in HEAD_ON or {"impact", "overlap"} & {*self.n})
         is_in_lane = where in ("ahead", "behind", "oncoming")
         self.course = Course(lane, lane, self.size.length, forward, is_along, crosses, is_in_lane, faces)
+        self.course.backs = crosses and "reverse" in self.whats
         stands = role.kind not in MOVING or where == "parked" or crosses
         stands |= comes or (where == "beside" and "speed" not in self.n)
         if stands and self.maneuvers:  # where it begins to act is where it is
@@ -273,7 +274,7 @@ class Placing:
         first = self.maneuvers[0] if self.maneuvers else None
         if course.is_along and course.forward < 0 and course.s < 0:
             self._refuse("drives away before it is on the road; give another place")
-        is_behind = self.role.where == "behind" and not self.stage.world.first_speed
+        is_behind = self.role.where in ("behind", "parked") and not self.stage.world.first_speed
         if v == 0 and not self.triggers.waits and not course.is_there(is_behind, False):
             is_early = course.along < self.size.length / 2
             end = "begins at 0" if is_early else f"ends at {self.stage.road.length:.0f}"
@@ -285,7 +286,7 @@ class Placing:
             self._refuse("cannot be where it meets the tested car in time; give another place, or more speed")
         if self.held and wait == math.inf and first and not first.event:
             self._refuse("never comes to where it is to act; give another gap or speed")
-        is_beside = abs(self.lateral.t) >= (self.size.width + met.width) / 2
+        is_beside = abs(self.lateral.t - met.t) >= (self.size.width + met.width) / 2
         if course.is_along and abs(course.along - met.s) < self.half and not is_beside:
             self._refuse("would be in the tested car at the start; give another gap")
         moves = self.longitudinal.cruise > 0
@@ -313,6 +314,8 @@ class Placing:
             return max(self.met.v + self.n["faster"], 0.0)
         if role.kind in USUAL_SPEEDS:
             return min(USUAL_SPEEDS[role.kind] / 3.6, limit)
+        if role.where == "beside" and any(each.what == "reverse" for each in role.actions):
+            return REVERSING
         if role.actions and role.actions[0].what in ("turn_in", "turn_across"):
             return min(TURNING, limit)
         return limit if role.where == "oncoming" else min(self.met.v, limit) or limit

@@ -10,7 +10,6 @@ from roadgpt.brief.scene import HEAD_ON, LEAVES, MOST_MORE, Event
 from roadgpt.geometry.boxes import corners, touch
 from roadgpt.language.table import MANEUVERS
 from roadgpt.network.line import SPACING, driven_line
-from roadgpt.road.road import START
 from roadgpt.traffic.actor import HEADING, SIZES, STILL, Actor, FloatArray, TestedCar
 from roadgpt.traffic.course import Met
 from roadgpt.traffic.following import ALONG
@@ -31,7 +30,7 @@ class Script:
         """Draws the numbers of the scene and places everybody as seen from where the tested car starts.
         Raises SceneError if something of the scene cannot be on this road."""
         self._stage, self._way = stage, driven_line(stage.road, stage.world)
-        first = self._way.from_road(min(START, stage.road.length / 2))
+        first = self._way.from_road(stage.world.start_on(stage.road))
         self._performers = self._placed(Met(first, stage.world.first_speed, *SIZES["car"][:2]))
         free = [each.course.way.points for each in self._performers if each.course.way is not self._way]
         there = [(np.array(at), each.size) for each in self._performers if (at := each.state())]
@@ -124,8 +123,8 @@ class Script:
     def _seen(self, car: TestedCar) -> Met:
         s = self._way.from_road(car.s)
         x, y, _, heading = self._way.pose(s)
-        s += (car.x - x) * math.cos(heading) + (car.y - y) * math.sin(heading)
-        return Met(s, car.speed, car.length, car.width)
+        cos, sin, dx, dy = math.cos(heading), math.sin(heading), car.x - x, car.y - y
+        return Met(s + dx * cos + dy * sin, car.speed, car.length, car.width, dy * cos - dx * sin)
 
     def start(self, car: TestedCar, bodies: FloatArray) -> FloatArray:
         """Places everybody as seen from the tested car."""

@@ -14,6 +14,7 @@ from roadgpt.traffic.maneuver import (
     CHANGE,
     FAST,
     LATERAL,
+    REVERSING,
     ROLL,
     STOP,
     TURNING,
@@ -175,12 +176,12 @@ class Triggers:
                 return [out._replace(goal=goal, pull=starting(speed.kind, goal) if accel is None else pull)]
             case "drift" | "cut_in" | "cut_out" | "change_lane" | "wrong_way":
                 return [out]
-            case "reverse":
-                back = Phase(-(5 / 3.6 if to is None else to), 1.0, until="speed")
+            case "reverse" if not course.backs:
+                back = Phase(-(REVERSING if to is None else to), 1.0, until="speed")
                 return [Phase(0.0, STOP, until="speed"), back, Phase(lasts=lasts or math.inf)]
             case "turn_off":
                 return [Phase(min(v, TURNING) if to is None else to, STOP, until="met")]
-            case _:  # merge, turn_in, turn_across, cross, run_light, run_sign
+            case _:  # merge, turn_in, turn_across, cross, run_light, run_sign, reverse out of a driveway
                 goal = speed.cruise if to is None else to
                 start = starting(speed.kind, goal) if self.waits else CHANGE
                 return [Phase(goal, start if accel is None else pull, until="met")]

@@ -19,7 +19,6 @@ from roadgpt.network import Passage, Route, is_route
 from roadgpt.network.lane_along import LONGEST, SHARE
 from roadgpt.network.lanes import HEADROOM, STRAIGHT_AHEAD, Lanes, lanes_of
 from roadgpt.network.line import SPACING, Line, driven_line
-from roadgpt.network.markings import CROSSWALK
 from roadgpt.network.network import Leg
 from roadgpt.road.road import GOAL
 from roadgpt.traffic.actor import SIZES, FloatArray
@@ -109,17 +108,18 @@ def _across(role: Role, near: float, road: "Road", world: "World", away: float |
 def _crosswalk(near: float, road: "Road", is_open: bool) -> float:
     """Returns the station of the first crosswalk from ``near`` on; where the place is left open, that behind
     a junction at which the tested car turns."""
-    away = CROSSWALK[0] + CROSSWALK[1] / 2
-    network = road.network if is_route(road) else None
-    for passage in road.passages if network else ():
-        assert network is not None
-        before, behind = (passage.arrival, passage.start - away), (passage.departure, passage.end + away)
-        turn = abs(float(wrap_angle(road.heading(passage.end) - road.heading(passage.start))))
-        turns = is_open and (turn > OPPOSITE or passage.entered.id in network.roundabout_of)
-        for end, s in (behind, before) if turns else (before, behind):
-            if end in network.crossed and s >= near:
-                return float(s)
-    raise SceneError(f"the route passes no crosswalk after {near:.0f} m; write crosswalk behind a junction")
+    found = [each for each in road.crosswalks if each.s >= near]
+    for n, each in enumerate(found):
+        if (way := each.passage) and is_open and not each.is_behind:
+            turn = abs(float(wrap_angle(road.heading(way.end) - road.heading(way.start))))
+            turns = turn > OPPOSITE or (is_route(road) and way.entered.id in road.network.roundabout_of)
+            if turns and any(other.passage is way for other in found[n + 1 :]):
+                continue
+        return float(each.s)
+    raise SceneError(
+        f"the route passes no crosswalk after {near:.0f} m; write // crosswalk //, or crosswalk behind a "
+        "junction"
+    )
 
 
 class _Around(NamedTuple):

@@ -292,16 +292,17 @@ NAMED: dict[str, Criterion] = {each.name: each for each in CRITERIA}
 
 
 def incidents_of(case: Judged) -> tuple[Incident, ...]:
-    """Returns what went wrong in a drive, in order of time, but for what the script of the scene ordered."""
+    """Returns what went wrong in a drive, in order of time, also what the script of the scene ordered."""
     has = (ROUTE if case.is_route else set()) | (OTHERS if case.drive.others is not None else set())
     found = [one for each in CRITERIA if each.find and each.needs <= has for one in each.find(case)]
-    found = [each for each in found if each.kind in MEETING or not _is_ordered(case.drive, each)]
     return tuple(sorted(found, key=lambda each: each.at_time))
 
 
-def _is_ordered(drive: "Drive", incident: Incident) -> bool:
+def is_ordered(drive: "Drive", incident: Incident) -> bool:
     """Whether the script had the hand by which something was done: the wheel, or for what is not steered the
-    pedals as well."""
+    pedals as well. Of what others do to the car, nothing is."""
+    if incident.kind in MEETING:
+        return False
     hands = {SCRIPT: RETURNS} if incident.kind in STEERED else {SCRIPT: RETURNS, PEDALS: 0.0}
     return any(
         each.start < incident.at_time <= each.end + hands[each.by]

@@ -21,6 +21,7 @@ from roadgpt.verdict.criteria import (
     Judged,
     first_failure,
     incidents_of,
+    is_ordered,
 )
 from roadgpt.verdict.oracle import EPSILON, consult, has_departed, margins
 from roadgpt.verdict.verdict import (
@@ -74,7 +75,8 @@ def judge(
         UsageError: The drive was stopped at a smaller tolerance than ``world.limits.oob_tolerance``."""
     laid = world.lay(road)
     case = Judged(drive.followed(laid, world), drive, world)
-    incidents = incidents_of(case)
+    done = incidents_of(case)
+    incidents = tuple(each for each in done if not is_ordered(drive, each))
     step, failed = first_failure(case, incidents, known if drive.others is None else None)
     behind = _behind(case) if failed and failed.name in ("stuck", "timeout") else ""
     by_script = drive.handed_to(step) in (SCRIPT, PEDALS) and bool(drive.missed)
@@ -85,7 +87,7 @@ def judge(
     if handed_to == PEDALS and (cause in DEPARTURES or cause in STEERED):
         handed_to = None
     asks = cause == "collision" or bool(handed_to and cause in GIVES_WAY)  # those may be up to the brakes
-    found, law, fault = _blame(case, laid, incidents, hit, asks)
+    found, law, fault = _blame(case, laid, done, hit, asks)
     avoidable = found.is_avoidable or found.is_own_doing if found and cause == "collision" else None
     outcome: Outcome = "PASS" if failed is None else "UNAVOIDABLE" if avoidable is False else "FAIL"
     excuse = ""
@@ -263,6 +265,9 @@ def _behind(case: Judged) -> str:
 def _kept(drive: "Drive", world: "World", margin: float, beyond: float, behind: str) -> str:
     """Describes a PASS, and how far outside its lane the car was, which the tolerance allows to a limit."""
     reached = f"to the goal after {drive['s'][-1]:.0f} m"
+    if drive.ended == "over":
+        did = "was parked to the end of the scene" if world.scene.parks else "turned round as told"
+        return f"{did}, after {drive.duration:.0f} s"
     if behind:
         reached = f"for {drive['s'][-1]:.0f} m and stayed {behind}"
     if not drive.max_outside:

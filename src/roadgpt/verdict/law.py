@@ -159,15 +159,16 @@ def _on_road(
         if is_turn and is_there and np.cos(heading - came) > np.cos(TURNS):
             return "other", {"priority"}, set()
     if not stands and abs(across) > ACROSS * np.hypot(along, across):
-        crossed = network.crossed
-        for way in road.passages if kind in PERSONS else ():
-            arrives = way.arrival in crossed and way.start - CROSSED <= s <= way.start
-            leaves = way.departure in crossed and way.end <= s <= way.end + CROSSED
+        for crosswalk in road.crosswalks if kind in PERSONS else ():
+            if abs(s - crosswalk.s) > CROSSED / 2:
+                continue
+            if (way := crosswalk.passage) is None:
+                return "other", {"priority"}, set()
             done = {each.kind for each in incidents if way.start - BEFORE < each.at_s <= hit.at_s}
-            if (arrives or leaves) and "red light" in done:
+            if "red light" in done:
                 return "other", {"red light"}, set()
             turns = np.cos(np.subtract(*road.heading([way.start, way.end]))) < np.cos(TURNS)
-            if (arrives or leaves) and (not (drive.lights and way.control == "lights") or (leaves and turns)):
+            if not (drive.lights and way.control == "lights") or (crosswalk.is_behind and turns):
                 return "other", {"priority"}, set()
         return "ego", set(), {"priority"}
     if not stands and along < 0:

@@ -388,7 +388,11 @@ class Joining:
                 self.remarks.add("left out: connecting roads that no junction names", f"road {file.id}")
         at_junctions = {arm.end for junction in junctions for arm in junction.arms}
         known = self.continuations.values()
-        joined = [each for each in known if not {each.before, each.after} & at_junctions]
+        joined = [
+            replace(each, crosswalk=each.before in crossed)
+            for each in known
+            if not {each.before, each.after} & at_junctions
+        ]
         used = {each.road for junction in junctions for each in junction.connections}
         roads = [each for each in self.members.values() if each.junction is None or each.id in used]
         whole = Network(tuple(sorted(roads, key=lambda each: each.id)), tuple(junctions), (), tuple(joined))
@@ -407,8 +411,15 @@ class Joining:
                 own = [n for n, end in enumerate(arms) if end.road in self.parts[file.id]]
                 usual = CROSSWALK[0] + CROSSWALK[1] / 2 if own else 0.0
                 nearest = min(own or range(len(arms)), key=lambda n: abs(away[n] - usual), default=None)
+                joints = [
+                    each.before
+                    for each in self.continuations.values()
+                    if abs(math.dist(self._pose(each.before)[:2], at) - CROSSWALK[0] - CROSSWALK[1] / 2) < 1.0
+                ]
                 if nearest is not None and away[nearest] <= CROSSING:
                     found.add(arms[nearest])
+                elif joints:
+                    found.add(joints[0])
                 else:
                     self.remarks.add("left out: crosswalks away from junctions", f"road {file.id}")
         return found

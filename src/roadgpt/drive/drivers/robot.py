@@ -11,6 +11,7 @@ from roadgpt.drive.view import Command, View
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
+GOES_ON = 0.5  # m/s^2, with which somebody else changes the speed
 NEAR = 0.5  # m and m/s; larger errors, as at a start from rest, are not summed up
 
 
@@ -19,9 +20,10 @@ class Robot(Reference):
     """Drives as the robots in the cars of Euro NCAP's tests do: holds the middle of its lane and its speed,
     whatever is ahead.
 
-    The speed is that of the scene, else the speed limit. Euro NCAP allows the car 0.5 km/h more and 0.05 m to
-    either side. The robot does not slow down for bends: where a bend needs more friction than there is, the
-    car leaves its path. It does not look at others, lights or signs.
+    The speed is that of the scene, else the speed limit; where the scene makes the car stand at first, that
+    with which it has gone on. Euro NCAP allows the car 0.5 km/h more and 0.05 m to either side. The robot
+    does not slow down for bends: where a bend needs more friction than there is, the car leaves its path. It
+    does not look at others, lights or signs.
 
     It steers as the driver ``reference`` does, with two differences. The feedback also sums up what is left
     of an error. And where the curvature changes at once, as at the corners of junctions, the car turns in
@@ -47,13 +49,16 @@ class Robot(Reference):
         for curvature, stretch in zip(line.curvature[1:], line.stretch[1:], strict=True):
             share = math.exp(-line.step * stretch / self.to_rear)
             self._yaw.append(share * self._yaw[-1] + (1 - share) * curvature)
-        self._held = world.first_speed
-        self._aside = self._behind = 0.0
+        self._held, self._stands = world.first_speed, world.scene.stands and bool(world.scene.actions)
+        self._aside = self._behind = self._was = 0.0
 
     def steer(self, view: View) -> Command:
         """Steers for the bend ahead and against the errors; holds the speed."""
         steer, aside = self.steered(view, self._yaw)
-        slower = self._held - max(view.vx, 0.0)
+        was, self._was = self._was, max(view.vx, 0.0)
+        if self._stands and abs(self._was - was) > GOES_ON * view.dt:
+            self._held = self._was
+        slower = self._held - self._was
         self._aside += aside * view.dt if abs(aside) < NEAR else 0.0
         self._behind += slower * view.dt if abs(slower) < NEAR else 0.0
         wanted = self.pull * slower + self.drawn * self._behind

@@ -119,6 +119,7 @@ class MujocoSimulator:
             steer, throttle, brake = guard.ask(view)
             if script is not None:
                 monitor.heed(guard.handed_to, script.has_end, step * CONTROL, CONTROL)
+                monitor.is_over = script.is_over
                 if script.road is not road:
                     road = script.road
                     vehicle.keep_to(LanePolygon.along(road, world))

@@ -69,6 +69,7 @@ class Signals:
                 self.lights[arm.end] = number
                 controller.add("control", {"signalId": str(number), "type": "0"})
         crossed = [arm.end for _, arm in arms if arm.crosswalk]
+        crossed += [each.before for each in network.continuations if each.crosswalk]
         for number, end in enumerate(crossed, first + len(controlled)):
             self._objects[end.road].append(crosswalk_object(network.road(end.road), end, number))
         painted = arrows(network)
