@@ -39,7 +39,9 @@ OTHER_SIDE: dict[Side, Side] = {"left": "right", "right": "left"}
 SIDE = re.compile("left(?!_hand)|right")
 OTHER_POLE = {"north": "south", "south": "north"}
 UPSIDE_DOWN = re.compile("north|south")
-OF_THE_WORDS = ("words", "beside", "unused", "confidence", "other", "map_size", "scene")
+OF_THE_WORDS = (
+    "words", "beside", "unused", "confidence", "other", "map_size", "lane_width", "limit", "scene",
+)  # fmt: skip
 """The fields of a Brief that require nothing of the shape of a road."""
 
 
@@ -151,6 +153,10 @@ class Brief(Frozen):
     """Whether traffic drives on the left."""
     map_size: Annotated[float, Field(ge=SMALLEST_MAP, le=LARGEST_MAP)] | None = None
     """The side of the square map in metres; None if the description does not give it."""
+    lane_width: Annotated[float, Field(ge=2, le=10)] | None = None
+    """The width of every lane in metres, of a whole route; None: that of the World."""
+    limit: Annotated[float, Field(ge=5, le=300)] | None = None
+    """The speed limit in km/h, of a whole route; None: that of the World."""
     map: MapClause | None = None
     """The map of roads that is required instead of one road. A plan then gives no other requirements than
     ``length``, ``left_hand``, ``map_size`` and ``beside``."""
@@ -189,6 +195,8 @@ class Brief(Frozen):
             raise ValueError("traffic drives on one side on the whole route; write left_hand after ||")
         if any(stretch.map_size for stretch in self.stretches):
             raise ValueError("a route lies on one map; write map_size= after ||")
+        if any(stretch.lane_width or stretch.limit for stretch in self.stretches):
+            raise ValueError("the lanes of a route have one width, and one limit; write them after ||")
         if any(stretch.scene != Scene() for stretch in self.stretches):
             raise ValueError("a scene is that of the whole route, not of one of its roads")
         if any(stretch.comes_from for stretch in self.stretches):

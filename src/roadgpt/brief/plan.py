@@ -88,6 +88,8 @@ OF_WHOLE = {
     "length": "len",
     "left_hand": "left_hand",
     "map_size": "map_size",
+    "lane_width": "width",
+    "limit": "limit",
     "beside": "beside",
     "comes_from": "from",
     "surroundings": ", ".join(named_in("surroundings")),
@@ -192,6 +194,8 @@ CLAUSE = language(PARTS["clause"])
 ROAD = language(
     PARTS["road"],
     map_size=partial(_one_number, "map has one size", SMALLEST_MAP, LARGEST_MAP, "m", "map_size=500"),
+    lane_width=partial(_one_number, "lane has one width", 2, 10, "m", "width=3"),
+    limit=partial(_one_number, "road has one speed limit", 5, 300, "km/h", "limit=50"),
     speed=partial(_one_number, "road has one design speed", SLOWEST, FASTEST, "km/h", "speed=80"),
 )
 JUNCTION, JUNCTIONS_OF_MAP = language(PARTS["junction"], "junction"), language(PARTS["junctions"])

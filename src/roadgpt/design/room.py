@@ -25,10 +25,10 @@ def world_for(brief: Brief | None, world: World) -> World:
     that was given to the World is kept; the usual speed limit grows to the speed at which a scene begins, and
     to MOTORWAY_LIMIT for a scene on a motorway.
     Raises BriefError if the scene needs what the Brief excludes."""
-    found = world.in_scene_of(brief).on_surface_of(brief)
+    found = world.in_scene_of(brief).on_surface_of(brief).with_numbers_of(brief)
     if brief is not None:
         limit = found.limits.speed_limit
-        if limit == Limits().speed_limit:
+        if limit == Limits().speed_limit and brief.limit is None:
             usual = MOTORWAY_LIMIT if brief.motorway and found.scene != Scene() else limit
             if max(found.first_speed, usual) > limit:
                 found = found.changed(speed_limit=max(found.first_speed, usual))
@@ -55,6 +55,11 @@ def world_remarks(brief: Brief, usual: World, found: World) -> tuple[str, ...]:
     said = [surface_remark(names, found.site.friction, found.scene.surfaces, is_set)]
     said += [*lane_remarks(brief, usual, found), speed_remark(brief, usual, found)]
     said += [scene_remark(brief, found), need_remark(brief, found), map_remark(brief, usual, found)]
+    own = {"lane width": (brief.lane_width, found.section.lane_width, "--lane-width")}
+    own["speed limit"] = brief.limit, KMH * found.limits.speed_limit, "--speed-limit"
+    for name, (asked, now, option) in own.items():
+        if asked is not None and abs(asked - now) > 1e-6:
+            said.append(f"the words ask for a {name} of {asked:g}, but {option} {now:g} is set and used")
     return tuple(filter(None, said))
 
 

@@ -411,6 +411,15 @@ class World(BaseModel):
         changes = {name: value for name, value in wanted.items() if value is not None and name not in given}
         return self.changed(**changes) if changes else self
 
+    def with_numbers_of(self, brief: "Brief | None") -> "World":
+        """Returns the World with the width of lanes and the speed limit of a Brief, where none was given."""
+        if brief is None:
+            return self
+        wanted = {"lane_width": brief.lane_width, "speed_limit": brief.limit and brief.limit / KMH}
+        given = self.section.model_fields_set | self.limits.model_fields_set
+        changes = {name: value for name, value in wanted.items() if value is not None and name not in given}
+        return self.changed(**changes) if changes else self
+
     @property
     def given_map(self) -> float | None:
         """The side of the map in metres, if one was given; None if it is the usual one."""
