@@ -14,10 +14,11 @@ import numpy as np
 
 from roadgpt.brief.scene import STRUCK
 from roadgpt.errors import SceneError
-from roadgpt.geometry.boxes import separation, touching, turned
+from roadgpt.geometry.boxes import touching, turned
 from roadgpt.network.line import driven_line
 from roadgpt.road.road import GOAL
 from roadgpt.traffic.actor import HEADING, SIZES, STEP, Size, TestedCar, X, Y
+from roadgpt.traffic.crash import first_touch
 from roadgpt.traffic.performer import Performer
 from roadgpt.traffic.places import SIGN
 from roadgpt.traffic.script import Script
@@ -34,7 +35,6 @@ PLAYS, HALVINGS = 14, 14  # at most: to each side of the first one, and between 
 BLIND = 6  # plays to each side after which nobody is met any more
 WIDE = {"along": 0.25, "aside": 0.25, "time": 0.5}
 """From one play to the next: shares of its length and of its width, and seconds."""
-PARTS = 12  # of a step, at which a touch is looked for
 INSIDE, PASSED = 1.0, 20.0  # m between middles: they have touched; they have passed each other
 NOBODY = np.empty((0, 7))
 
@@ -188,29 +188,16 @@ def _played(script: Script, number: int, path: Sequence[TestedCar]) -> _Play:
         if far < INSIDE or (far > nearest + PASSED and not who.course.is_along):
             break
         nearest = np.fmin(nearest, far)
-    tracks, at = np.array(states)[:, :, [X, Y, HEADING]], np.arange(len(states) - 1, step=1 / PARTS)
-    met = (
-        np.array([(car.x, car.y, car.heading) for car in path[: len(states)]])
-        if foe is None
-        else tracks[:, foe]
-    )
-    one, two = (
-        np.stack([np.interp(at, np.arange(len(each)), column) for column in each.T], axis=-1)
-        for each in (met, tracks[:, row])
-    )
-    size = np.array(
-        [path[0][-2:] if foe is None else script.actors[foe].size[:2], script.actors[row].size[:2]]
-    )
-    away = two[:, :2] - one[:, :2]
-    sizes = np.broadcast_to(size[:, None], (2, len(at), 2))
-    apart = separation(away, one[:, 2], sizes[0], two[:, 2], sizes[1]).max(axis=-1)
-    ahead, aside = turned(away, -one[:, 2]).T
+    if foe is not None:
+        return _Play(0.0 if row in script.crashed else None)
+    two = np.array(states)[:, row, [X, Y, HEADING]]
+    one = np.array([(car.x, car.y, car.heading) for car in path[: len(states)]])
+    size = np.array([path[0][-2:], who.size[:2]])
+    ahead, aside = turned(two[:, :2] - one[:, :2], -one[:, 2]).T
     comes = np.flatnonzero(np.diff((np.abs(aside) < size[:, 1].mean()).astype(int)) > 0)
     beside = float(ahead[comes[0] + 1]) if len(comes) else None
-    if not (touched := np.flatnonzero(apart <= 0.0)).size:
+    if (touch := first_touch(one, two, size)) is None:
         return _Play(ahead=beside)
-    k = max(int(touched[0]), 1)
-    share = min(max(apart[k - 1] / max(apart[k - 1] - apart[k], 1e-9), 0.0), 1.0)
-    place = np.array([(1 - share) * each[k - 1] + share * each[k] for each in (one, two)])
+    place = touch[1]
     how = touching(place[:, :2], place[:, 2], size)
     return _Play(_around(how.faces[0], how.place), beside)

@@ -3,10 +3,12 @@
 import math
 from typing import cast
 
+import numpy as np
+
 from roadgpt.brief.scene import ACCELERATES, ON_ITS_WAY
 from roadgpt.network.line import GRIP
 from roadgpt.road.speed_profile import GRAVITY
-from roadgpt.traffic.actor import STEP, STILL
+from roadgpt.traffic.actor import STEP, STILL, FloatArray
 from roadgpt.traffic.course import Met
 from roadgpt.traffic.following import AFTER_CONTACT
 from roadgpt.traffic.maneuver import FAST, LATERAL, Phase
@@ -44,6 +46,8 @@ class Performer:
         self._matches = placed.matches
         self.is_there, self.foe = True, cast("Performer | None", None)
         """Whether it takes part at all, and whom of the others it is to hit."""
+        self._slides: tuple[float, FloatArray] | None = None
+        """Its heading and its velocity (x, y) in m/s, after it has hit another one or was hit by it."""
 
     @property
     def limited(self) -> dict[int, tuple[str, bool]]:
@@ -76,6 +80,9 @@ class Performer:
         ):
             return None
         x, y, z, heading = course.way.pose(course.s, self.lateral.t)
+        if self._slides is not None:
+            heading, (vx, vy) = self._slides
+            return x, y, z, heading, float(vx * math.cos(heading) + vy * math.sin(heading))
         turned, turns = math.atan(slope), math.pi * course.backs
         heading += turns + (turned if course.forward > 0 else math.pi - turned)
         return x, y, z, heading, math.copysign(math.hypot(v, v * slope), v) * (-1 if course.backs else 1)
@@ -83,6 +90,10 @@ class Performer:
     def move(self, time: float, met: Met) -> None:
         """Moves it from a time to STEP later."""
         self.triggers.time, self.triggers.met, left = time, met, STEP
+        if self._slides is not None:
+            x, y, _ = (self.state() or (0.0, 0.0, 0.0))[:3]
+            self.slide(np.array([x, y]), *self._slides, STEP)
+            return
         if self.hits:
             self.longitudinal.goal, self.longitudinal.pull, self.phases = 0.0, AFTER_CONTACT, []
             self.longitudinal.v = min(self.longitudinal.v, max(met.v, 0.0))
@@ -102,6 +113,16 @@ class Performer:
         self._go(left)
         if self.phases:
             self._show()
+
+    def slide(self, place: FloatArray, heading: float, velocity: FloatArray, lasts: float) -> None:
+        """Slides for some seconds from a place (x, y) with a velocity (x, y) until it stands."""
+        speed = max(float(np.hypot(*velocity)), 1e-9)
+        pull = AFTER_CONTACT * min(self.placed.stage.world.site.friction, 1.0)
+        left, time = max(speed - pull * lasts, 0.0), min(lasts, speed / pull)
+        x, y = place + velocity / speed * (speed + left) / 2 * time
+        s, t = self.course.way.locate(x, y)
+        self.course.s, self.lateral.t, self.longitudinal.v = float(s), float(t), left
+        self._slides, self.phases = (heading, velocity * left / speed), []
 
     def _match(self) -> None:
         """Chooses the speed before the first maneuver, so that it meets the tested car whatever that does."""

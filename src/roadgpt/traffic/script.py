@@ -10,8 +10,9 @@ from roadgpt.brief.scene import HEAD_ON, LEAVES, MOST_MORE, Event
 from roadgpt.geometry.boxes import corners, touch
 from roadgpt.language.table import MANEUVERS
 from roadgpt.network.line import SPACING, driven_line
-from roadgpt.traffic.actor import HEADING, SIZES, STILL, Actor, FloatArray, TestedCar
+from roadgpt.traffic.actor import HEADING, SIZES, STEP, STILL, Actor, FloatArray, TestedCar
 from roadgpt.traffic.course import Met
+from roadgpt.traffic.crash import crash
 from roadgpt.traffic.following import ALONG
 from roadgpt.traffic.performer import Performer
 from roadgpt.traffic.places import parked_rows
@@ -49,6 +50,8 @@ class Script:
         """Returns everybody where they are at first, as seen from the tested car."""
         found, kinds = list[Performer](), Counter[str]()
         self._of_role: dict[int, Performer] = {}
+        self.crashed = dict[int, float]()
+        """When those in some rows hit whom of the others they are to hit."""
         self.events: dict[tuple[str, ...], float] = {}
         """When what the actors do has begun and ended, as ``Maneuver.event`` names it."""
         for number, role in enumerate(self._stage.world.scene.actors):
@@ -137,9 +140,15 @@ class Script:
         lane, but not for the tested car, unless they overtake it. Who hits it from behind stops there."""
         seen = self._seen(car)
         self._look(bodies, car)
+        past = self._states()
         for each in self._performers:
             _touch(each, car)
             each.move(time, seen)
+        for row, each in enumerate(self._performers if self._stage.aims else ()):
+            foe = None if each.foe is None else self._performers.index(each.foe)
+            if foe is not None and crash(each, self._performers[foe], past[[row, foe]]):
+                self.crashed.setdefault(row, time + STEP)
+                self.happened.setdefault(f"{self.actors[row].name} hits {self.actors[foe].name}", car.s)
         for actor, each in zip(self.actors, self._performers, strict=False):
             self.happened |= {
                 did: car.s for n in each.shown if (did := _did(actor, each, n)) not in self.happened
@@ -201,6 +210,8 @@ class Script:
         """What of the scene has not begun so far, a sentence for each actor."""
         found = []
         for actor, each in zip(self.actors, self._performers, strict=False):
+            if each.foe is not None and self._performers.index(each) not in self.crashed:
+                found.append(f"{NEVER} {actor.name} hits {each.role.hits}: the drive ended before")
             number = next((n for n in range(len(each.maneuvers)) if n not in each.shown), None)
             if number is not None:
                 found.append(f"{NEVER} {_did(actor, each, number)}: {_why(each, number)}")
