@@ -171,3 +171,65 @@ def test_plans_hold_who_hits_whom() -> None:
     for words in ("van ahead; car lane left hits=van 1: cut_in", "car behind impact=30 hits=rear"):
         read = read_plan(f"straight && {words}")
         assert read_plan(plan(read)).scene == read.scene
+
+
+AMONG = {
+    # somebody cuts in and does not see that the van brakes; head on; across a junction
+    f"{TWO_LANES}ego v=50; van ahead gap=60 v=50: brake 4; car lane left v=50 hits=van 1: cut_in": (
+        "car",
+        "van",
+    ),
+    f"{BOTH_WAYS}ego v=50; car ahead gap=60 v=50; truck oncoming v=50 hits=car 1: drift": ("truck", "car"),
+    "crossroads straight none && ego v=40; car junction left v=40: cross; van junction opposite v=40 "
+    "hits=car 1: cross": ("van", "car"),
+}
+MASSES = {"car": 1700.0, "van": 2500.0, "truck": 16000.0}  # kg, of the table
+
+
+@pytest.mark.parametrize("words", AMONG)
+def test_two_others_hit_each_other_and_come_to_rest(words: str) -> None:
+    kinds = AMONG[words]
+    run, drive, others = parts(words, "lane_centring")
+    assert run.outcome == "PASS", run.description  # who comes behind them brakes in time
+    names = [each.name for each in others.actors]
+    rows = [names.index(f"{kind} 1") for kind in kinds]
+    sizes, states = [others.actors[row].size[:2] for row in rows], others.states[:, rows]
+    overlaps = np.array([
+        0.0 if np.isnan(pair).any() else box(pair[0], sizes[0]).intersection(box(pair[1], sizes[1])).area
+        for pair in states
+    ])  # fmt: skip
+    first = int(np.flatnonzero(overlaps)[0])
+    assert overlaps.max() < 0.1  # m2: nobody goes through the other
+    (event,) = [each for each in drive.history if each.what == f"hits {kinds[1]} 1"]
+    assert (event.who, event.time) == (f"{kinds[0]} 1", pytest.approx(0.1 * first, abs=0.11))
+    assert f"{event.who} {event.what} at {event.time:.1f} s" in run.description
+    velocity = np.diff(states[..., :2], axis=0) / 0.1
+    masses = np.array([MASSES[kind] for kind in kinds])
+    momenta = np.einsum("k,nkx->nx", masses, velocity)
+    sliding = masses.sum() * 6.0 * 0.25  # kg m/s, by the deceleration between the two
+    assert np.hypot(*(momenta[first + 1] - momenta[first - 2])) < sliding + 0.05 * np.hypot(
+        *momenta[first - 2]
+    )
+    speeds = np.hypot(*np.moveaxis(velocity[first + 1 :], -1, 0))
+    gains = np.diff(speeds, axis=0) / 0.1
+    assert gains.max() < 0.5
+    for own, change in zip(speeds.T, gains.T, strict=True):
+        slides = own[1:] > 1.5
+        assert np.allclose(change[slides], -6.0, atol=0.6)
+    assert np.abs(states[-1, :, 4]).max() == 0.0
+
+
+def test_traffic_behind_a_collision_of_others_stops_and_collides_with_nobody() -> None:
+    words = (
+        f"{TWO_LANES}ego v=50; van ahead gap=60 v=50: brake 4; car lane left v=50 hits=van 1: cut_in; medium"
+    )
+    _, drive, others = parts(words, "lane_centring")
+    two = {"van 1", "car 1"}
+    (hit,) = [each for each in drive.history if each.what == "hits van 1"]
+    assert hit.time is not None
+    for states in others.states[: round(10 * hit.time) + 400 : 2]:
+        there = [n for n, each in enumerate(states) if np.isfinite(each[0])]
+        boxes = [box(states[n], others.actors[n].size[:2]) for n in there]
+        pairs = shapely.STRtree(boxes).query(boxes, predicate="intersects").T
+        met = [{others.actors[there[n]].name for n in pair} for pair in pairs.tolist() if pair[0] < pair[1]]
+        assert met in ([], [two])

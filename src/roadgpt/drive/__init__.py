@@ -13,7 +13,6 @@ This package has two kinds of plug-ins. A simulator (``simulators/``) is a car a
         def steer(self, view: View) -> Command         # called every 20 ms"""
 
 import logging
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
@@ -31,8 +30,7 @@ from roadgpt.network import only_road, refuse_other_lane, refuse_without_route
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
-    from roadgpt.traffic import Tracks, Traffic
-    from roadgpt.traffic.traffic import Aiming
+    from roadgpt.traffic import TestedCar, Tracks, Traffic
 
 NO_LAND = "this simulator builds no land: the road is driven without it"
 # The former name of CameraSpec; users' drivers may import it.
@@ -162,8 +160,9 @@ def simulate(
     if replay is not None or world.scene.has_others:
         from roadgpt.traffic import begin  # a drive without others does not need it
 
-        aims = _aims(road, world, seed) if any(each.hits for each in world.scene.actors) else None
-        traffic = begin(road, world, seed, replay, aims)
+        aims = {n: None for n, each in enumerate(world.scene.actors) if each.hits}
+        path = _path(road, world, seed, begin(road, world, seed, replay, aims)) if aims else ()
+        traffic = begin(road, world, seed, replay, path=path)
     more = () if traffic is None else (traffic,)  # a simulator without others takes no such argument
     drive: Drive = engine.simulate(road, world, made, seed, keep_driving, *more)
     check_motion(drive)
@@ -174,22 +173,17 @@ def simulate(
     return replace(drive, missed=missed, limited=limited, stopped=traffic.stopped, history=history)
 
 
-def _aims(road: "Road", world: "World", seed: int) -> "Mapping[int, Aiming | None]":
-    """Returns with which aims who is to hit somebody hits a car that the test robot drives, and the script of
-    the scene; both react to nobody. Raises SceneError if it cannot."""
-    from roadgpt.traffic import STEP, TestedCar, begin
-    from roadgpt.traffic.aiming import aims_of
-    from roadgpt.traffic.traffic import Stage
+def _path(road: "Road", world: "World", seed: int, traffic: "Traffic | None") -> "list[TestedCar]":
+    """Returns where the tested car is every STEP seconds that the test robot drives, and the script of the
+    scene, among those others who are to hit nobody: it reacts to nobody."""
+    from roadgpt.traffic import STEP, TestedCar
 
-    nobody = {n: None for n, each in enumerate(world.scene.actors) if each.hits}
-    alone = begin(road, world, seed, aims=nobody)
-    drive = plugins.find("simulators", "mujoco")().simulate(
-        road, world, driver_of("robot"), seed, True, alone
-    )
+    robot = driver_of("robot")
+    drive = plugins.find("simulators", "mujoco")().simulate(road, world, robot, seed, True, traffic)
     at = np.arange(0.0, drive.duration + 1e-6, STEP)
     columns = [*drive.middles.T, *(drive[name] for name in ("speed", "s", "t"))]
     rows = np.column_stack([np.interp(at, drive["time"], each) for each in columns]).tolist()
-    return aims_of(Stage(road, world, seed), [TestedCar(*row, *drive.car[:2]) for row in rows])
+    return [TestedCar(*row, *drive.car[:2]) for row in rows]
 
 
 def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None, replays: bool = False) -> None:

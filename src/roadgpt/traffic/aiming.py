@@ -17,12 +17,12 @@ from roadgpt.errors import SceneError
 from roadgpt.geometry.boxes import touching, turned
 from roadgpt.network.line import driven_line
 from roadgpt.road.road import GOAL
-from roadgpt.traffic.actor import HEADING, SIZES, STEP, Size, TestedCar, X, Y
+from roadgpt.traffic.actor import HEADING, SIZES, STEP, FloatArray, Size, TestedCar, X, Y
 from roadgpt.traffic.crash import first_touch
 from roadgpt.traffic.performer import Performer
 from roadgpt.traffic.places import SIGN
 from roadgpt.traffic.script import Script
-from roadgpt.traffic.traffic import Aiming, Stage
+from roadgpt.traffic.traffic import Aiming, Mover, Stage, Traffic
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -36,7 +36,6 @@ BLIND = 6  # plays to each side after which nobody is met any more
 WIDE = {"along": 0.25, "aside": 0.25, "time": 0.5}
 """From one play to the next: shares of its length and of its width, and seconds."""
 INSIDE, PASSED = 1.0, 20.0  # m between middles: they have touched; they have passed each other
-NOBODY = np.empty((0, 7))
 
 
 def steady(
@@ -72,17 +71,19 @@ def aims_of(stage: Stage, path: Sequence[TestedCar]) -> dict[int, Aiming | None]
     for number in aims:
         aims[number] = Aiming()
         script = Script(stage._replace(aims=aims))
-        aims[number] = _aimed(script, number, aims, path)
+        aims[number] = _aimed(stage, script, number, aims, path)
     return aims
 
 
-def _aimed(script: Script, number: int, aims: dict[int, Aiming | None], path: Sequence[TestedCar]) -> Aiming:
+def _aimed(
+    stage: Stage, script: Script, number: int, aims: dict[int, Aiming | None], path: Sequence[TestedCar]
+) -> Aiming:
     who, row, _ = script.role(number)
     told, placed, met = _told(who), who.placed, dict[float, str]()
 
     def off(by: str = "", far: float = 0.0) -> float | None:
         aims[number] = Aiming()._replace(**{by: far} if by else {})
-        play = _played(script, number, path)
+        play = _played(stage, script, number, path)
         if play.place is None:
             return None
         away = 0.0 if told is None else (play.place - told + 2.0) % 4.0 - 2.0
@@ -94,7 +95,7 @@ def _aimed(script: Script, number: int, aims: dict[int, Aiming | None], path: Se
         return 0.0 if abs(away) < EXACT else away
 
     aims[number] = Aiming()
-    first = _played(script, number, path)
+    first = _played(stage, script, number, path)
     beside = -first.ahead if first.ahead is not None and first.place is None else 0.0
     begun = [time for event, time in script.events.items() if event[:3] == ("with", *(who.name or ()))]
     wide = {"along": who.size.length, "aside": who.size.width, "time": 1.0}
@@ -108,6 +109,13 @@ def _aimed(script: Script, number: int, aims: dict[int, Aiming | None], path: Se
     instead = f"it comes no nearer to that than {met[min(met)]}" if met else "they never touch there"
     said = f"{script.actors[row].name} cannot hit {of}{who.role.hits}"
     raise SceneError(f"{said} with what the scene leaves open: {instead}; change what one of them does")
+
+
+def _flow(stage: Stage) -> Iterator[Mover]:
+    if stage.world.scene.has_flow:
+        from roadgpt.traffic.idm import IdmMover
+
+        yield IdmMover(stage)
 
 
 def _told(who: Performer) -> float | None:
@@ -173,24 +181,24 @@ def _passes(here: float | None, there: float | None) -> bool:
     return here is not None and there is not None and here * there <= 0 and abs(here - there) < 2.0
 
 
-def _played(script: Script, number: int, path: Sequence[TestedCar]) -> _Play:
+def _played(stage: Stage, script: Script, number: int, path: Sequence[TestedCar]) -> _Play:
     """Plays the scene, and finds when somebody first touches whom it is to hit."""
-    try:
-        states = [script.start(path[0], NOBODY)]
-    except SceneError:
-        return _Play()
-    who, row, foe = script.role(number)
-    nearest = np.inf
-    for n, car in enumerate(path[:-1]):
-        states.append(script.move(n * STEP, car, NOBODY))
-        its = (car.x, car.y) if foe is None else states[-2][foe, :2]
-        far = float(np.hypot(*(states[-2][row, :2] - its)))
+    others, states, nearest = Traffic([script, *_flow(stage)]), list[FloatArray](), np.inf
+    for n, car in enumerate(path):
+        try:
+            others.advance(car)
+        except SceneError:
+            return _Play()
+        who, row, foe = script.role(number)
+        states.append(others.at(n * STEP))
+        its = (car.x, car.y) if foe is None else states[-1][foe, :2]
+        far = float(np.hypot(*(states[-1][row, :2] - its)))
         if far < INSIDE or (far > nearest + PASSED and not who.course.is_along):
             break
         nearest = np.fmin(nearest, far)
     if foe is not None:
         return _Play(0.0 if row in script.crashed else None)
-    two = np.array(states)[:, row, [X, Y, HEADING]]
+    two = np.array([each[row, [X, Y, HEADING]] for each in states])
     one = np.array([(car.x, car.y, car.heading) for car in path[: len(states)]])
     size = np.array([path[0][-2:], who.size[:2]])
     ahead, aside = turned(two[:, :2] - one[:, :2], -one[:, 2]).T

@@ -50,8 +50,8 @@ class Script:
         """Returns everybody where they are at first, as seen from the tested car."""
         found, kinds = list[Performer](), Counter[str]()
         self._of_role: dict[int, Performer] = {}
-        self.crashed = dict[int, float]()
-        """When those in some rows hit whom of the others they are to hit."""
+        self.crashed = dict[int, tuple[float, float]]()
+        """When and where those in some rows hit whom of the others they are to hit."""
         self.events: dict[tuple[str, ...], float] = {}
         """When what the actors do has begun and ended, as ``Maneuver.event`` names it."""
         for number, role in enumerate(self._stage.world.scene.actors):
@@ -147,7 +147,8 @@ class Script:
         for row, each in enumerate(self._performers if self._stage.aims else ()):
             foe = None if each.foe is None else self._performers.index(each.foe)
             if foe is not None and crash(each, self._performers[foe], past[[row, foe]]):
-                self.crashed.setdefault(row, time + STEP)
+                s = self._way.to_road(float(self._way.locate(*self._states()[row, :2])[0]))
+                self.crashed.setdefault(row, (time + STEP, s))
                 self.happened.setdefault(f"{self.actors[row].name} hits {self.actors[foe].name}", car.s)
         for actor, each in zip(self.actors, self._performers, strict=False):
             self.happened |= {
@@ -211,7 +212,7 @@ class Script:
         found = []
         for actor, each in zip(self.actors, self._performers, strict=False):
             if each.foe is not None and self._performers.index(each) not in self.crashed:
-                found.append(f"{NEVER} {actor.name} hits {each.role.hits}: the drive ended before")
+                found.append(f"{NEVER} {actor.name} hits {each.role.hits}: {ENDED}")
             number = next((n for n in range(len(each.maneuvers)) if n not in each.shown), None)
             if number is not None:
                 found.append(f"{NEVER} {_did(actor, each, number)}: {_why(each, number)}")
@@ -229,6 +230,11 @@ class Script:
                 time, state = each.since[n]
                 s = None if state is None else self._way.to_road(float(self._way.locate(*state[:2])[0]))
                 found.append(Event(actor.name, maneuver.said, time, s, each.until.get(n)))
+            if each.foe is not None:
+                at = self.crashed.get(self._performers.index(each))
+                found.append(
+                    Event(actor.name, f"hits {each.role.hits}", *(at or ()), why="" if at else ENDED)
+                )
         return tuple(found)
 
 

@@ -108,6 +108,8 @@ def judge(
         whom = next((each.other for each in incidents if each.kind == cause), None)
         description = _failed(case, step, failed, side, contact, whom, fault)
     untold = [each for each in incidents if each is not contact or cause == "collision"]
+    crashed = (each for each in drive.history if each.what.startswith("hits ") and each.time is not None)
+    description += "".join(f"; {each.who} {each.what} at {each.time:.1f} s" for each in crashed)
     description += _on_face(world, hit) + _counted(untold, cause) + _who_drove(drive.shares, excuse)
     description += "".join(f"; {each}" for each in [*filter(None, [found and found.said]), *drive.limited])
     if failed is None and drive.missed:
