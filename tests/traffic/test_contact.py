@@ -24,6 +24,12 @@ STEP = 0.005  # s
 NEAR = 0.02  # m, of a corner that touches
 
 
+@pytest.fixture(autouse=True)
+def who_stands_is_soon_stuck(monkeypatch: pytest.MonkeyPatch) -> None:
+    """After 20 s instead of 120."""
+    monkeypatch.setattr("roadgpt.drive.drive_monitor.STUCK_AMONG_OTHERS", 20.0)
+
+
 @cache
 def run_of(words: str, driver: str = "robot") -> Run:
     return perform(words, seed=3, setup=Setup(driver=driver, reader="plan"))
@@ -206,7 +212,7 @@ def test_two_others_hit_each_other_and_come_to_rest(words: str) -> None:
     velocity = np.diff(states[..., :2], axis=0) / 0.1
     masses = np.array([MASSES[kind] for kind in kinds])
     momenta = np.einsum("k,nkx->nx", masses, velocity)
-    sliding = masses.sum() * 6.0 * 0.25  # kg m/s, by the deceleration between the two
+    sliding = masses.sum() * 6.0 * 0.35  # kg m/s, by the deceleration between the two
     assert np.hypot(*(momenta[first + 1] - momenta[first - 2])) < sliding + 0.05 * np.hypot(
         *momenta[first - 2]
     )

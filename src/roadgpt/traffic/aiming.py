@@ -196,14 +196,16 @@ def _played(stage: Stage, script: Script, number: int, path: Sequence[TestedCar]
         if far < INSIDE or (far > nearest + PASSED and not who.course.is_along):
             break
         nearest = np.fmin(nearest, far)
-    if foe is not None:
-        return _Play(0.0 if row in script.crashed else None)
     two = np.array([each[row, [X, Y, HEADING]] for each in states])
     one = np.array([(car.x, car.y, car.heading) for car in path[: len(states)]])
     size = np.array([path[0][-2:], who.size[:2]])
+    if foe is not None:
+        one, size[0] = np.array([each[foe, [X, Y, HEADING]] for each in states]), script.actors[foe].size[:2]
     ahead, aside = turned(two[:, :2] - one[:, :2], -one[:, 2]).T
     comes = np.flatnonzero(np.diff((np.abs(aside) < size[:, 1].mean()).astype(int)) > 0)
     beside = float(ahead[comes[0] + 1]) if len(comes) else None
+    if foe is not None and row in script.crashed:
+        return _Play(0.0, beside)
     if (touch := first_touch(one, two, size)) is None:
         return _Play(ahead=beside)
     place = touch[1]

@@ -11,7 +11,7 @@ from typing import NoReturn
 
 import numpy as np
 
-from roadgpt.brief.scene import HEAD_ON, LEAVES, ON_ITS_WAY, Action, Role
+from roadgpt.brief.scene import HEAD_ON, LEAVES, ON_ITS_WAY, STRUCK, Action, Role
 from roadgpt.errors import SceneError
 from roadgpt.geometry.boxes import touch
 from roadgpt.language.table import ALONG, CUES, MANEUVERS, MOVING, NUMBERS, PLACES, USUAL_SPEEDS, one_of
@@ -178,7 +178,8 @@ class Placing:
         lead, along = self.lead, ("along",) * (not self.is_placed or self.course.meeting is not None)
         slides = any(each.what in LATERAL for each in self.maneuvers) or self.course.meeting is not None
         is_open = slides and lead and {*CUES, "at"}.isdisjoint(lead.action.model_fields_set)
-        may = {"offset", "overlap"}.isdisjoint(self.n) and (not slides or self.first == "drift")
+        may = self.role.hits in STRUCK and {"offset", "overlap"}.isdisjoint(self.n)
+        may = may and (not slides or self.first == "drift")
         aside, later = ("aside",) * may, ("time",) * bool(is_open)
         return (*aside, *along, *later) if self.role.hits in ("front", "rear") else (*along, *later, *aside)
 

@@ -146,9 +146,13 @@ class Script:
             each.move(time, seen)
         for row, each in enumerate(self._performers if self._stage.aims else ()):
             foe = None if each.foe is None else self._performers.index(each.foe)
-            if foe is not None and crash(each, self._performers[foe], past[[row, foe]]):
+            if (
+                foe is not None
+                and row not in self.crashed
+                and crash(each, self._performers[foe], past[[row, foe]])
+            ):
                 s = self._way.to_road(float(self._way.locate(*self._states()[row, :2])[0]))
-                self.crashed.setdefault(row, (time + STEP, s))
+                self.crashed[row] = time + STEP, s
                 self.happened.setdefault(f"{self.actors[row].name} hits {self.actors[foe].name}", car.s)
         for actor, each in zip(self.actors, self._performers, strict=False):
             self.happened |= {
@@ -231,10 +235,9 @@ class Script:
                 s = None if state is None else self._way.to_road(float(self._way.locate(*state[:2])[0]))
                 found.append(Event(actor.name, maneuver.said, time, s, each.until.get(n)))
             if each.foe is not None:
-                at = self.crashed.get(self._performers.index(each))
-                found.append(
-                    Event(actor.name, f"hits {each.role.hits}", *(at or ()), why="" if at else ENDED)
-                )
+                when, at = self.crashed.get(self._performers.index(each), (None, None))
+                why = ENDED if when is None else ""
+                found.append(Event(actor.name, f"hits {each.role.hits}", when, at, why=why))
         return tuple(found)
 
 
