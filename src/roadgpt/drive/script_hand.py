@@ -99,6 +99,8 @@ class ScriptHand:
         for number, action in enumerate(world.scene.actions):
             self._maneuvers.append(Maneuver(action, drawn(action, rng), whats[:number].count(action.what)))
             self._put(number)
+        if world.scene.stands and whats[:1] == ["wait"]:  # it does so from the begin on
+            self._maneuvers[0].rolls = 0.0
         self._nobody = Met(FAR, 0.0, box.length, box.width)
         self._lateral, self.moves = Lateral(), tuple[LaneMove, ...]()
         self._lane = 0.0
