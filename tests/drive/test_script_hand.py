@@ -300,6 +300,16 @@ def test_it_goes_around_somebody_and_back(scene: str, clear: float, driver: str)
     assert at(drive, "t", drive.duration - 2.0) == pytest.approx(at(drive, "t", 0.0), abs=0.2)
 
 
+@pytest.mark.parametrize("first", ["cones 1", "barrier 1"])
+def test_those_that_stand_in_one_row_are_passed_together(first: str) -> None:
+    words = f"straight 400 && ego v=30: overtake {first}; cones x6 ahead gap=90; barrier ahead gap=112"
+    run = run_of(words)
+    assert run.drive is not None
+    assert run.outcome == "PASS"
+    assert nearest(run.drive) > 1.0
+    assert len(run.drive.moves) == 2  # out once, and back once
+
+
 def test_who_is_made_to_drive_on_the_wrong_side_is_to_blame_there() -> None:
     scene = "ego v=50: pass truck 1 left; truck ahead v=20 gap=50; car oncoming"
     wrong = run_of(f"straight 400 && {scene}", "robot").verdict

@@ -36,6 +36,7 @@ from roadgpt.geometry import wrap_angle
 from roadgpt.language.names import Side
 from roadgpt.language.table import MANEUVERS, THINGS, VEHICLES
 from roadgpt.network.line import driven_line
+from roadgpt.traffic.actor import STILL
 from roadgpt.traffic.course import Course, Met
 from roadgpt.traffic.lateral import Lateral, Offsets
 from roadgpt.traffic.longitudinal import Longitudinal
@@ -67,6 +68,7 @@ CLEAR_OF_PEOPLE = 1.5  # m, also of who rides a bicycle: Germany, StVO, section 
 EARLY = 1.0  # s, before it would have to begin to go around somebody
 FOLLOWING = 2.0  # s of headway, with which it still follows whom it overtakes
 EDGE = 0.2  # m, from the edge of the shoulder, or the road, where it pulls over
+ROW = 15.0  # m between those that stand in one row
 PASSED = {"overtake": 10.0, "pass": 2.0}  # m, behind its rear, where it goes back
 
 
@@ -324,7 +326,8 @@ class ScriptHand:
 
     def _met(self, name: str | None = None) -> tuple[str, Met, float]:
         """Returns who is ahead in the lane of the tested car, or has a name: its name, how it is seen from
-        there, and how far its middle is to the left of that."""
+        there, and how far its middle is to the left of that. Those that stand in one row with it count as
+        one with who has a name."""
         if self._traffic is None:
             return "", self._nobody, 0.0
         actors, states = self._traffic.actors, self._traffic.at(self._triggers.time)
@@ -336,7 +339,15 @@ class ScriptHand:
             return "", self._nobody, 0.0
         first = int(np.where(is_it, ahead, np.inf).argmin())
         half, wide = (float(each[first]) for each in boxes.reach)
-        met = Met(float(boxes.along[first]), float(boxes.velocity[first, 0]), 2 * half, 2 * wide)
+        low, high = float(boxes.along[first]) - half, float(boxes.along[first]) + half
+        stands = np.hypot(*boxes.velocity.T) < STILL
+        in_row = np.abs(boxes.t - boxes.t[first]) < boxes.reach[1] + wide
+        in_row &= stands & stands[first] & np.isfinite(ahead) & (name is not None)
+        for each in np.argsort(np.abs(ahead - ahead[first])):  # the nearest ones first
+            begin, end = boxes.along[each] - boxes.reach[0][each], boxes.along[each] + boxes.reach[0][each]
+            if in_row[each] and begin - ROW < high and end + ROW > low:
+                low, high = min(low, float(begin)), max(high, float(end))
+        met = Met((low + high) / 2, float(boxes.velocity[first, 0]), high - low, 2 * wide)
         return actors[first].name, met, float(boxes.t[first])
 
     def _begin_in_time(self, view: View) -> None:
