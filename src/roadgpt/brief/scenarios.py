@@ -44,6 +44,22 @@ ROADS: Mapping[str, str] = TABLE.pop("roads")
 TOLERANCES: Mapping[str, Mapping[str, str]] = TABLE.pop("tolerances")
 
 
+class Rating(NamedTuple):
+    """One of the classes of Euro NCAP that tell how well a test ended."""
+
+    says: str
+    source: str
+    bands: Sequence[Mapping[str, float]]
+    """For speeds of the tested car from ``ego`` on, in km/h: the number below which each colour is."""
+    towards: int = 0
+    """If it is not 0: what counts is by how much less than nominal the speed of the impact is."""
+    edge: bool = False
+    """Whether metres beyond the edge of the lane count, and not the speed of an impact."""
+
+
+CLASSES = {name: Rating(**row) for name, row in TABLE.pop("classes").items()}
+
+
 class Missing(NamedTuple):
     """A row of the catalogue that is no scenario."""
 
@@ -90,6 +106,21 @@ class Scenario(NamedTuple):
     def tolerances(self) -> Mapping[str, str]:
         """Within how much what the robot drives is what the source prescribes."""
         return {**TOLERANCES.get(self.name.partition(":")[0], {}), **TOLERANCES["ours"]}
+
+    def rated(self, impact: float | None, beyond: float) -> tuple[str, str]:
+        """Returns the colour of how a test ended, and what decided: the difference of speeds at a contact in
+        km/h, None without one, and how many metres the tested car was beyond the edge of its lane."""
+        its, ego = CLASSES[self.judged], float(self.values["ego"])
+        if impact is None and not its.edge:
+            return "green", "0"
+        if impact is not None and its.edge:
+            return "red", f"{impact:.0f} km/h"
+        number = beyond if impact is None else impact
+        if impact is not None and its.towards:
+            number = ego + its.towards * float(self.values.get("target", 0.0)) - impact
+        band = [each for each in its.bands if each["ego"] <= ego][-1]
+        colour = next(each for each in band if each != "ego" and number < band[each])
+        return colour, f"{-beyond:+.2f} m" if impact is None else f"{impact:.0f}"
 
     @property
     def scene_text(self) -> str:

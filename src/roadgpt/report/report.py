@@ -15,6 +15,7 @@ from roadgpt.report.chapters.diversity import diversity
 from roadgpt.report.chapters.outcomes import driven, failures, outcomes
 from roadgpt.report.chapters.roads import coverage, every_road, overview
 from roadgpt.report.chapters.same_roads import same_roads
+from roadgpt.report.chapters.score import score
 from roadgpt.report.chapters.validity import (
     KINDS,
     SBFT,
@@ -87,6 +88,8 @@ def _page(record: Record, status: Status, command: str) -> Page:
     if is_paired:
         chapter = same_roads(record)
         sections, summary = [chapter.section, *sections], [*chapter.sentences, *summary]
+    if scores := score(record):
+        sections = [scores, *sections]
     title, lead = titles(status, first)
     return Page(title, summary, sections, card_of_tests(command, record, status, groups), lead)
 

@@ -186,9 +186,28 @@ def compare(
     params=[
         Argument("names...", "NAME", required=False),
         options.json_option("Print one JSON object for each scenario.", heading=Heading.OUTPUT),
+        Option(
+            "--score",
+            "Test a driver on scenarios, and colour the results by Euro NCAP's classes: "
+            "--score 'ncap:*' lane_centring.",
+            metavar="SET DRIVER",
+            nargs=2,
+        ),
+        Option(
+            "--grid",
+            "With --score: test each with its nominal values, or on its standard grid.",
+            click.Choice(["nominal", "standard"]),
+            "nominal",
+        ),
+        options.seed("With --score: the same seed gives the same scores.", 0),
+        options.out(
+            "With --score: folder for the tests, which goes on where it was interrupted. [default: a new one]"
+        ),
     ],
 )
-def scenarios(names: tuple[str, ...], as_json: bool) -> None:
+def scenarios(
+    names: tuple[str, ...], as_json: bool, score: tuple[str, str] | None, out: Path | None, **given: Any
+) -> None:
     """List the scenarios of the catalogue, or show those of a name whole: with the units of their parameters,
     standard grid, scene and nominal road.
 
@@ -199,7 +218,11 @@ def scenarios(names: tuple[str, ...], as_json: bool) -> None:
     roadgpt scenarios r157:cut_in
     roadgpt scenarios "ncap:CP*" --json
     roadgpt run "a country road with wide bends" --scenario "r157:cut_in gap=20"
+    roadgpt scenarios --score "ncap:*" lane_centring --grid standard
     """
+    if score:
+        _score(*score, out, given)
+        return
     from roadgpt.brief.scenarios import MISSING, Missing, chosen
 
     source = ""
@@ -232,3 +255,31 @@ def scenarios(names: tuple[str, ...], as_json: bool) -> None:
         for head, said in rows:
             indent = " " * (6 + wide)
             click.echo(click.wrap_text(said, 80, f"    {head:<{wide}}  ", indent))
+
+
+def _score(names: str, driver: str, out: Path | None, given: dict[str, Any]) -> None:
+    """Tests a driver on scenarios in a campaign, and prints the scores, which its report has, too."""
+    from roadgpt.campaign.record import Record
+    from roadgpt.cli.commands.evaluate import write_report
+    from roadgpt.cli.commands.search import campaign
+    from roadgpt.report.chapters.score import lines, score
+    from roadgpt.run.folder import new_folder
+
+    out = out or new_folder(f"score {names} {driver}", given["seed"])
+    words = ["--scenario", names, "--driver", driver, "--out", str(out)]
+    words += [word for name, value in given.items() for word in (f"--{name}", str(value))]
+    campaign.main(words, "roadgpt campaign", standalone_mode=False)
+    with Record.opened(out) as record:
+        found = score(record)
+    for line in lines(found) if found else ():
+        click.echo(
+            "".join(click.style(text, fg="black", bg=GROUNDS[to]) if to else text for text, to in line)
+        )
+    click.echo(f"page: {write_report(out)}")
+
+
+GROUNDS = {
+    "green": (63, 191, 107), "yellow": (255, 221, 51), "orange": (255, 153, 51), "brown": (185, 129, 79),
+    "red": (255, 107, 107), "grey": (184, 184, 184),
+}  # fmt: skip
+"""Of colours on the terminal, as on pages."""

@@ -13,13 +13,14 @@ class TableCell(NamedTuple):
     value: Raw  # the value that is written into CSV files
     text: str  # the text that people read
     href: str = ""  # relative address of the cell's link; empty for no link
+    colour: str = ""  # name of the colour of its ground in style.css
 
 
-def cell(value: Raw, text: str | None = None, href: str = "") -> TableCell:
+def cell(value: Raw, text: str | None = None, href: str = "", colour: str = "") -> TableCell:
     """Returns a cell. Without ``text``, the cell shows the value itself, or a dash for None."""
     if text is None:
         text = "–" if value is None else f"{value:,}" if isinstance(value, int) else str(value)
-    return TableCell(value, text, href)
+    return TableCell(value, text, href, colour)
 
 
 def linked(text: str, href: str) -> TableCell:
