@@ -195,11 +195,11 @@ def compare(
         ),
         Option(
             "--grid",
-            "With --score: test each with its nominal values, or on its standard grid.",
+            "With --score: nominal values, or the standard grid.",
             click.Choice(["nominal", "standard"]),
             "nominal",
         ),
-        options.seed("With --score: the same seed gives the same scores.", 0),
+        options.seed("With --score: the same seed gives the same.", 0),
         options.out(
             "With --score: folder for the tests, which goes on where it was interrupted. [default: a new one]"
         ),
