@@ -112,11 +112,13 @@ def test_a_scenario_has_the_parameters_and_the_grid_that_were_written_before(nam
 @pytest.mark.parametrize("name", BY_NAME)
 def test_each_is_a_scene_and_what_the_command_line_takes_is_what_it_tells(name: str) -> None:
     one = scenarios()[name]
-    assert one.onto(Scene()).speed is not None
+    scene = one.onto(Scene())
+    assert scene.speed is not None or scene.parks
     assert str(scenario(name)) == name
     faster = scenario(f"{name} ego=31")
     assert str(faster) == f"{name} ego=31"
-    assert faster.onto(Scene()).speed == read_plan("straight && ego v=31").scene.speed
+    if not scene.parks:
+        assert faster.onto(Scene()).speed == read_plan("straight && ego v=31").scene.speed
     assert [*map(str, chosen(str(faster)))] == [str(faster)]
 
 
@@ -124,7 +126,7 @@ def test_each_is_a_scene_and_what_the_command_line_takes_is_what_it_tells(name: 
 def test_every_point_of_a_grid_is_a_scene(name: str) -> None:
     every = [*scenario(name).points("standard", True)]
     for point in every[:: len(every) // 8 or 1]:
-        assert point.onto(Scene()).speed is not None
+        assert point.onto(Scene())
         assert read_plan(point.plan)
 
 
