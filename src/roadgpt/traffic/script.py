@@ -140,7 +140,7 @@ class Script:
         lane, but not for the tested car, unless they overtake it. Who hits it from behind stops there."""
         seen = self._seen(car)
         self._look(bodies, car)
-        past = self._states()
+        past = self._states() if self._stage.aims else np.empty((0, 5))
         for each in self._performers:
             _touch(each, car)
             each.move(time, seen)
