@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from itertools import repeat
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,9 +11,11 @@ from roadgpt.brief.scene import Scene
 from roadgpt.brief.visibility import visual_range
 from roadgpt.compiled import bound, compiled, inlined
 from roadgpt.drive.drive import COLUMNS, Box, FloatArray
+from roadgpt.drive.lanes_along import LanesAlong
 from roadgpt.drive.view import LightAhead, Other, Others
 from roadgpt.geometry.boxes import part_inside, touch
 from roadgpt.ground.sight import Horizon, is_behind_land
+from roadgpt.language.names import ActorKind
 from roadgpt.language.table import VEHICLES
 from roadgpt.network.landscape import horizon_around
 from roadgpt.network.lanes import HEADROOM
@@ -194,9 +195,12 @@ class Company:
         """Whether traffic lights that run are on the way."""
         self._scene, self._samples = world.scene, 0
         self._lights_reach = visual_range(world.scene, "lights")
-        self._kinds: list[str] = []
+        self._kinds: list[ActorKind] = []
         self._heights = heights_along(road)
         self._horizon = horizon_around(road, world)
+        self._lanes_along = LanesAlong(road, world)
+        self._made = dict[int, Other]()
+        """Whom the driver has seen since the last sample, by number."""
         self._outline = np.array([box.length, box.width, box.ahead, box.height])
         self._looks = none = np.empty((0, 5))
         self._found = none, np.empty(0, np.int64), np.empty((0, 7))
@@ -215,17 +219,21 @@ class Company:
         if touches:
             self._monitor.touch(time)
         _, order, seen = self._found
-        boxes, kinds = seen[:count].copy(), [self._kinds[k] for k in order[:count].tolist()]
-        said = zip(kinds, *boxes.T[:6].tolist(), strict=True)
-        others = Others(map(tuple.__new__, repeat(Other), said))  # faster than Other._make
-        others.boxes = boxes
+        made, some = self._made, order[:count].tolist()
+        if new := [n for n, k in enumerate(some) if k not in made]:
+            rows = seen[new]
+            places = self._lanes_along.places(rows[:, 0], rows[:, 1])
+            for n, row, place in zip(new, rows.tolist(), places, strict=True):
+                made[some[n]] = Other(self._kinds[some[n]], *row[:6], *place)
+        others = Others(map(made.__getitem__, some))
+        others.boxes = seen[:count].copy()
         return others
 
     def _move_on(self, row: FloatArray) -> None:
         box, (x, y, heading, speed, s, t) = self._box, row[[X, Y, HEADING, SPEED, S, T]].tolist()
         x, y = x + box.ahead * math.cos(heading), y + box.ahead * math.sin(heading)
         self._traffic.advance(TestedCar(x, y, heading, speed, s, t, box.length, box.width))
-        self._samples += 1
+        self._samples, self._made = self._samples + 1, {}
         if came := self._traffic.actors[len(self._kinds) :]:
             self._kinds += [each.kind for each in came]
             self._looks, count = np.vstack([self._looks, looks_of(came, self._scene)]), len(self._kinds)

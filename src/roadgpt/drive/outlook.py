@@ -73,6 +73,12 @@ def _junction(road: "Road", passage: "Passage") -> tuple[float, float, tuple[str
 
 
 def _beside(profile: "Profile", lane: int) -> tuple[int, int]:
-    row = sorted((*profile.along_ids, *profile.against_ids), reverse=profile.leads_along(lane))
-    to_left = row.index(lane)  # OpenDRIVE's ids fall from left to right as seen along the road
+    row = from_left(profile, lane)
+    to_left = row.index(lane)
     return to_left, len(row) - 1 - to_left
+
+
+def from_left(profile: "Profile", lane: int) -> list[int]:
+    """Returns the driving lanes of a road from left to right, as they are seen along one of them."""
+    # OpenDRIVE's ids fall from left to right as seen along the road
+    return sorted((*profile.along_ids, *profile.against_ids), reverse=profile.leads_along(lane))

@@ -1,5 +1,6 @@
 """Defines the View that a driver gets and the Command that it returns at every control step."""
 
+import math
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -67,6 +68,15 @@ class Other(NamedTuple):
     length: float
     """Length of its box in metres, and ``width``."""
     width: float
+    s: float = math.nan
+    """Station of the middle of its box in metres along the road's centre line, seen from the nearest place of
+    the road; before its begin negative. ``t`` is its offset to the left. NaN in simulators that do not tell
+    them."""
+    t: float = math.nan
+    lane: int | None = None
+    """The driving lane of the road in which the middle of its box is, counted to the left from the one that
+    the car is to follow, oncoming lanes included: 0 is that one, 1 the next one to its left, -1 the next one
+    to its right. None if it is in none of them."""
 
     @property
     def group(self) -> Literal["vehicle", "person", "animal", "thing"]:
@@ -79,8 +89,8 @@ class Others(tuple[Other, ...]):
 
     @cached_property
     def boxes(self) -> NDArray[np.float64]:
-        """Each Other from ``x`` on, and 1.0 if it is a vehicle, else 0.0; shape (n, 7)."""
-        return np.array([(*each[1:], each.kind in VEHICLES) for each in self], float).reshape(-1, 7)
+        """Each Other from ``x`` to ``width``, and 1.0 if it is a vehicle, else 0.0; shape (n, 7)."""
+        return np.array([(*each[1:7], each.kind in VEHICLES) for each in self], float).reshape(-1, 7)
 
 
 class View(NamedTuple):
