@@ -224,7 +224,7 @@ class Company:
             rows = seen[new]
             places = self._lanes_along.places(rows[:, 0], rows[:, 1])
             for n, row, place in zip(new, rows.tolist(), places, strict=True):
-                made[some[n]] = Other(self._kinds[some[n]], *row[:6], *place)
+                made[some[n]] = Other._make((self._kinds[some[n]], *row[:6], *place))
         others = Others(map(made.__getitem__, some))
         others.boxes = seen[:count].copy()
         return others
