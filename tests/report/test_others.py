@@ -10,7 +10,8 @@ from matplotlib.patches import Polygon
 from roadgpt.geometry.boxes import corners
 from roadgpt.report import birds_eye
 from roadgpt.report.canvas import encoded
-from roadgpt.report.others import COLOURS, _corners_at, moment_of, step_at
+from roadgpt.report.moments import moments
+from roadgpt.report.others import COLOURS, moment_of
 from roadgpt.report.view import _closest
 from roadgpt.road import Road, World
 from roadgpt.run import Request, Run, Setup
@@ -61,29 +62,52 @@ def test_everybody_is_drawn_where_he_was_at_the_contact(crash: Run) -> None:
     assert time == crash.verdict.at_time
     figure = birds_eye(crash)
     states, actors = crash.drive.others.at(time), crash.drive.others.actors
-    main, inset = boxes(figure), boxes(figure, 1)
+    main = boxes(figure)
     for state, actor in zip(states, actors, strict=True):
         if actor.kind != "adult":  # who is drawn larger
             assert is_drawn(corners(state[:2], state[3], np.array(actor.size)), main)
-    assert is_drawn(corners(states[0, :2], states[0, 3], np.array(actors[0].size)), inset)
-    assert not is_drawn(corners(states[1, :2], states[1, 3], np.array(actors[1].size)), inset)
     outlines = [patch.get_xy()[:-1] for patch in figure.axes[0].patches if isinstance(patch, Polygon)]
     round_ones = [each for each in outlines if len(each) > 8 and np.ptp(each, axis=0).max() < 15]
     assert [each.mean(axis=0) for each in round_ones] == [pytest.approx(states[2][:2], abs=0.01)]
 
 
-def test_the_inset_shows_the_two_that_touch_and_names_them(crash: Run) -> None:
-    figure = birds_eye(crash)
-    own, other = boxes(figure, 1)
-    assert own[:, 0].max() == pytest.approx(other[:, 0].min(), abs=0.01)  # front to rear
-    (x0, x1), (y0, y1) = figure.axes[1].get_xlim(), figure.axes[1].get_ylim()
-    for box in (own, other):
-        assert (box > (x0, y0)).all()
-        assert (box < (x1, y1)).all()
-    said = {text.get_text() for text in figure.axes[1].texts}
-    assert {"tested car\n43 km/h", "van 1\n7 km/h"} <= said
-    label = f"contact with van 1, {crash.verdict.at_s:.0f} m"  # type: ignore[union-attr]
-    assert label in {text.get_text() for text in figure.axes[0].texts}
+def test_the_moments_show_the_two_that_touch_and_how_fast_they_were(crash: Run) -> None:
+    """The tested car drives at 12 m/s and the van at 2 m/s, 40 m ahead: what they do is known by hand."""
+    assert crash.verdict is not None
+    assert crash.verdict.at_time is not None
+    figure = moments(crash)
+    assert figure is not None
+    *views, gaps, collision, speeds = figure.axes
+    titles = [axes.get_title() for axes in views]
+    at = [title.startswith("contact") for title in titles].index(True)
+    assert titles[at] == f"contact, {crash.verdict.at_time:.1f} s"
+    assert titles[-1] == "end, 6.0 s"
+    drawn, (x0, x1) = boxes(figure, at), views[at].get_xlim()
+    inside = [box for box in drawn if x0 < box[:, 0].mean() < x1]
+    fronts = sorted((box[:, 0].min(), box[:, 0].max()) for box in inside[-2:])
+    assert fronts[0][1] == pytest.approx(fronts[1][0], abs=0.03)  # front to rear
+    by_name = {
+        line.get_label(): np.array(line.get_data())
+        for axes in (gaps, collision, speeds)
+        for line in axes.lines
+    }
+    assert by_name["tested car"][1][10] == pytest.approx(43.2, abs=0.2)
+    assert by_name["van 1"][1][10] == pytest.approx(7.2, abs=0.1)
+    gap = by_name["gap in the lane"]
+    assert gap[1][0] - gap[1][10] == pytest.approx(10.0, abs=0.1)  # 10 m/s of difference for a second
+    ttc = by_name["time to collision"]
+    assert ttc[1][10] == pytest.approx(crash.verdict.at_time - ttc[0][10], abs=0.03)
+    assert [boxes(figure, n) for n in range(at)]
+
+
+def test_the_closest_moment_is_one_of_them() -> None:
+    passing = run_with(bus_1=("bus", straight(90, 103, np.pi, 10)))
+    figure = moments(passing)
+    assert figure is not None
+    titles = [axes.get_title() for axes in figure.axes]
+    (closest,) = [title for title in titles if title.startswith("closest")]
+    assert float(closest.split()[1]) == pytest.approx(60 / 22, abs=0.8)  # they are side by side
+    assert moments(run_with()) is None
 
 
 def test_the_key_names_the_kinds_that_are_there(crash: Run) -> None:
@@ -112,7 +136,7 @@ def figure_lines(figure: Figure) -> list:  # type: ignore[type-arg]
     ]
 
 
-def test_without_a_contact_there_is_no_inset_and_without_others_nothing_else() -> None:
+def test_without_others_there_is_nothing_else() -> None:
     alone = run_with()
     passed = run_with(bus_1=("bus", straight(160, 102, np.pi, 10)))
     assert passed.verdict is not None
@@ -149,14 +173,3 @@ def test_the_page_names_whom_the_car_is_about_to_touch_and_where_it_touched_him(
     (place,) = told["contacts"]
     assert place["time"] == pytest.approx(hit.at_time, abs=2e-3)
     assert (place["x"], place["y"]) == pytest.approx(hit.contact.xy, abs=0.02)
-
-
-def test_a_contact_at_the_very_beginning_is_drawn_where_the_car_started(crash: Run) -> None:
-    """There is no step before the first one; the car is then drawn where it was, or on its way back."""
-    assert crash.drive is not None
-    first, second = crash.drive.corners(0), crash.drive.corners(1)
-    assert _corners_at(crash, 0.0) == pytest.approx(first)
-    assert _corners_at(crash, float(crash.drive["time"][1])) == pytest.approx(second)
-    early = _corners_at(crash, -0.001)
-    assert np.abs(early - first).max() < np.abs(second - first).max()
-    assert [step_at(crash, time) for time in (-1.0, 0.0, 1e6)] == [0, 0, len(crash.drive) - 1]

@@ -2,7 +2,9 @@
 
 birds_eye.png          the road from above, the driven path coloured by speed, the place of a failure
 height.png             distance against height
-curvature_grade.png    curvature, grade and speed along the road, with the limits of the rules
+moments.png            among others: top views of the decisive moments; gap, time to collision, both speeds
+curvature_grade.png    curvature, grade and speed along the road, with the limits of the rules; not among
+                       others on a straight, even road
 overview.png           all roads of a campaign
 
 The packages ``view`` and ``page`` make the page with a road in 3-D, and reports on many roads."""
@@ -13,7 +15,8 @@ from pathlib import Path
 
 from roadgpt.report.birds_eye import Scale, birds_eye
 from roadgpt.report.canvas import FORMATS, PNG, Format, in_our_style, save_all
-from roadgpt.report.height import height_profile, strip
+from roadgpt.report.height import height_profile, is_plain, strip
+from roadgpt.report.moments import moments
 from roadgpt.report.overview import overview
 from roadgpt.run import Run
 
@@ -48,7 +51,11 @@ def draw(run: Run, folder: Path | str, axes: Scale = "equal", formats: Sequence[
     folder = Path(folder)
     pictures = {"birds_eye.png": birds_eye(run, axes)}
     if run.road.has_way:
-        pictures |= {"height.png": height_profile(run, axes), "curvature_grade.png": strip(run)}
+        pictures |= {"height.png": height_profile(run, axes)}
+        met = moments(run)
+        pictures |= {"moments.png": met} if met is not None else {}
+        if met is None or not is_plain(run.road):
+            pictures["curvature_grade.png"] = strip(run)
     return [path for name, figure in pictures.items() for path in save_all(figure, folder / name, formats)]
 
 

@@ -39,7 +39,7 @@ from roadgpt.report.canvas import (
     plain,
     save,
 )
-from roadgpt.report.others import INSET, draw_contact, draw_others, first_of, key_of, moment_of, step_at
+from roadgpt.report.others import draw_others, first_of, key_of, moment_of, step_at
 from roadgpt.report.plan_view import (
     GROUND,
     Frame,
@@ -160,17 +160,12 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
     rims = {name: {"lw": RIM, "color": SEVERE[name]} for name in OUTSIDE if name in found}
     outside: list[KeyEntry] = [(f"{name} its lane", SWATCH, style) for name, style in rims.items()]
     rows = [row for row in (outside, _network_key(road, world, frame, per_inch), key_of(run)) if row]
-    contact = None if is_part else first_of(run, "collision")
-    foot = BOTTOM + KEY * len(rows) + (INSET + GAP if contact else 0.0)
+    foot = BOTTOM + KEY * len(rows)
     figure = new_figure(header.width, foot + across * frame.height / frame.width + header.height)
     axes = add_axes(figure, LEFT, foot, right, header.height)
     header.write(figure)
     for number, row in enumerate(reversed(rows)):
         _draw_key(figure, FOOT + KEY * number, row)
-    if contact is not None:
-        below = FOOT + KEY * len(rows)
-        inset = add_axes(figure, LEFT, below, right, figure.get_figheight() - below - INSET)
-        draw_contact(inset, run, contact)
     size = world.site.map_size
     show_from_above(axes, frame, 8)
     axes.set_facecolor("#d5d8dc")

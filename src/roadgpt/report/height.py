@@ -47,6 +47,7 @@ SIZE = 9  # points
 LEAST = 0.005  # ratio: a grade below this counts as level
 CLEAR = 0.06  # inches between a label and the road
 OVER_THE_FRAME = 3  # pixels by which a line on the border of the axes may reach over it
+STRAIGHT = 5000.0  # m: a radius above this counts as straight
 EARTH, SURFACE = "#dcd9c3", "#4b5563"
 
 STRIP_LEFT, STRIP_RIGHT = 1.1, 0.8  # inches
@@ -88,6 +89,13 @@ def strip(run: Run) -> Figure:
             axes.tick_params(labelbottom=False)
     name_places(figure.axes[0], places_of(run), run.length)
     return figure
+
+
+def is_plain(road: Road) -> bool:
+    """Returns whether a road is straight and its grade the same everywhere, so that there is nothing to see
+    along it."""
+    s = stations_of(road)
+    return float(np.abs(road.curvature(s)).max()) < 1 / STRAIGHT and float(np.ptp(road.grade(s))) < LEAST
 
 
 def _curvature(axes: Axes, run: Run, s: Array) -> None:

@@ -160,8 +160,9 @@ class Run:
 
     @property
     def title(self) -> str:
-        """The description, or the road's source if there is no description; never empty."""
-        return self.words or self.source or "a road without a description"
+        """The scenario with its parameters, and the description, or else the road's source; never empty."""
+        said = (self.request.setup.scenario, self.words or self.source)
+        return ": ".join(filter(None, said)) or "a road without a description"
 
     @property
     def plain_design(self) -> Design | None:
