@@ -57,7 +57,7 @@ def asked(referee: Any, run: Run) -> dict[str, tuple[Any, Any]]:
     ends = first.at_time if first else run.drive.duration if run.drive else 0.0
     for event in run.verdict.events or ():
         words = next((w for what, w in WORDS.items() if event.what.startswith(MANEUVERS[what].said)), None)
-        if not words or event.who not in deeds or event.time is None or event.time > ends - 1.0:
+        if not words or event.who not in deeds or event.why or event.time is None or event.time > ends - 1.0:
             continue
         until = (ends if event.until is None else event.until) + NEAR
         saw = [(each["does"], float(seen.t[each["begin"]]), each["time"]) for each in deeds[event.who]]

@@ -78,6 +78,16 @@ def test_a_cut_in_begins_and_ends_with_its_motion_sideways(among: Run) -> None:
     assert cuts_in.until == pytest.approx((moves[-1] + 1) * STEP, abs=0.4)
 
 
+def test_what_had_begun_and_not_ended_is_said(among: Run) -> None:
+    assert among.drive is not None
+    assert among.road is not None
+    brakes, *rest = among.drive.history
+    cut = replace(among.drive, history=(replace(brakes, until=None), *rest))
+    verdict = judge(among.road, cut, among.world)
+    said = {each.why for each in verdict.events or () if each.who == "car 1" and each.time is not None}
+    assert said == {"not ended when the drive ended"}
+
+
 def test_they_stand_in_order_and_what_never_happened_comes_last(among: Run) -> None:
     assert among.verdict is not None
     times = [each.time for each in among.verdict.events or ()]

@@ -17,6 +17,7 @@ from roadgpt.verdict.oracle import has_departed
 from roadgpt.verdict.verdict import Incident
 
 COMES = 50.0  # m: where one at 50 km/h brakes for red with 2 m/s^2
+UNENDED = "not ended when the drive ended"
 SHOWN: tuple[Shown, ...] = ("green", "yellow", "red")
 """By the numbers of the lights."""
 
@@ -24,7 +25,7 @@ SHOWN: tuple[Shown, ...] = ("green", "yellow", "red")
 def events_of(case: Judged, incidents: Sequence[Incident]) -> tuple[Event, ...]:
     """Returns the events of a drive in order of time, and then what did not happen."""
     drive = case.drive
-    found = [*drive.history, *_lights(case), *_out_of_lane(case)]
+    found = [*map(_ended, drive.history), *_lights(case), *_out_of_lane(case)]
     for each in incidents:
         if each.kind != "out of lane":
             what = f"{NAMED[each.kind].said} with {each.other}" if each.other else NAMED[each.kind].said
@@ -33,6 +34,12 @@ def events_of(case: Judged, incidents: Sequence[Incident]) -> tuple[Event, ...]:
         s = float(np.interp(hand.start, drive["time"], drive["s"]))
         found.append(Event(CAR, f"driven by {hand.by}", hand.start, s, hand.end))
     return tuple(sorted(map(_rounded, found), key=lambda each: np.inf if each.time is None else each.time))
+
+
+def _ended(event: Event) -> Event:
+    """Says of what has begun and not ended that it has not."""
+    is_open = event.time is not None and event.until is None and not event.why
+    return replace(event, why=UNENDED) if is_open else event
 
 
 def _rounded(event: Event) -> Event:
