@@ -29,7 +29,7 @@ NEAR = 3.0  # s
 WORDS = {
     "brake": ("brakes", "stops"), "stop": ("stops",), "cut_in": ("cuts in",), "cut_out": ("cuts out",),
     "change_lane": ("changes lane", "cuts in", "cuts out"), "overtake": ("overtakes",), "merge": ("merges",),
-    "cross": ("crosses", "enters"), "turn_across": ("turns across", "crosses", "enters"),
+    "cross": ("crosses", "enters", "turns in"), "turn_across": ("turns across", "crosses", "enters"),
     "turn_in": ("turns in", "crosses", "enters"), "turn_off": ("turns off",), "reverse": ("reverses",),
     "pull_out": ("pulls out",), "wrong_way": ("wrong way",), "run_light": ("runs red",),
 }  # fmt: skip
