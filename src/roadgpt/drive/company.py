@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from itertools import repeat
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -199,8 +200,8 @@ class Company:
         self._heights = heights_along(road)
         self._horizon = horizon_around(road, world)
         self._lanes_along = LanesAlong(road, world)
-        self._made = dict[int, Other]()
-        """Whom the driver has seen since the last sample, by number."""
+        self._near = np.empty(0, np.int64)
+        """Where along the road each of the others has been seen since the last sample, as ``find`` has it."""
         self._outline = np.array([box.length, box.width, box.ahead, box.height])
         self._looks = none = np.empty((0, 5))
         self._found = none, np.empty(0, np.int64), np.empty((0, 7))
@@ -219,25 +220,25 @@ class Company:
         if touches:
             self._monitor.touch(time)
         _, order, seen = self._found
-        made, some = self._made, order[:count].tolist()
-        if new := [n for n, k in enumerate(some) if k not in made]:
-            rows = seen[new]
-            places = self._lanes_along.places(rows[:, 0], rows[:, 1])
-            for n, row, place in zip(new, rows.tolist(), places, strict=True):
-                made[some[n]] = Other._make((self._kinds[some[n]], *row[:6], *place))
-        others = Others(map(made.__getitem__, some))
-        others.boxes = seen[:count].copy()
+        some, boxes = order[:count], seen[:count].copy()
+        near = self._near[some]
+        places = self._lanes_along.places(boxes[:, 0], boxes[:, 1], near)
+        self._near[some] = near
+        said = zip([self._kinds[k] for k in some.tolist()], *boxes.T[:6].tolist(), *places, strict=True)
+        others = Others(map(tuple.__new__, repeat(Other), said))  # faster than Other._make
+        others.boxes = boxes
         return others
 
     def _move_on(self, row: FloatArray) -> None:
         box, (x, y, heading, speed, s, t) = self._box, row[[X, Y, HEADING, SPEED, S, T]].tolist()
         x, y = x + box.ahead * math.cos(heading), y + box.ahead * math.sin(heading)
         self._traffic.advance(TestedCar(x, y, heading, speed, s, t, box.length, box.width))
-        self._samples, self._made = self._samples + 1, {}
+        self._samples += 1
         if came := self._traffic.actors[len(self._kinds) :]:
             self._kinds += [each.kind for each in came]
             self._looks, count = np.vstack([self._looks, looks_of(came, self._scene)]), len(self._kinds)
             self._found = np.empty((count, 5)), np.empty(count, np.int64), np.empty((count, 7))
+        self._near = np.full(len(self._kinds), -1)
 
     def bodies(self, time: float) -> "list[Body]":
         """Returns the bodies of the others at this time, for images."""

@@ -20,18 +20,25 @@ FEW = 8  # points, of which one is looked at before its neighbours are
 
 
 @compiled
-def find(x: Array, y: Array, points: Array, edges: Array, own: "NDArray[np.int64]", found: Array) -> None:
+def find(
+    x: Array, y: Array, points: Array, edges: Array, own: "NDArray[np.int64]", near: "NDArray[np.int64]",
+    found: Array,
+) -> None:  # fmt: skip
     """Writes the station, the offset and the lane of each place into ``found`` (n, 3), as seen from the
     nearest point and corrected for the curvature there; NaN is no lane. ``points`` have x, y, heading,
-    station and curvature; ``edges`` and ``own`` are those of LanesAlong."""
+    station and curvature; ``edges`` and ``own`` are those of LanesAlong. ``near`` has for each place the
+    number of the point around which it is looked for, -1 for all, and gets that which was found."""
     for k in range(len(x)):
-        at, best = 0, np.inf
+        at, best = max(near[k], 0), np.inf
         for step in (FEW, 1):
+            if step > 1 and near[k] >= 0:
+                continue
             first, last = (0, len(points)) if step > 1 else (max(at - FEW, 0), min(at + FEW + 1, len(points)))
             for n in range(first, last, step):
                 away = (points[n, 0] - x[k]) ** 2 + (points[n, 1] - y[k]) ** 2
                 if away < best:
                     at, best = n, away
+        near[k] = at
         dx, dy, bend = x[k] - points[at, 0], y[k] - points[at, 1], points[at, 4]
         cos, sin = math.cos(points[at, 2]), math.sin(points[at, 2])
         ahead, t = dx * cos + dy * sin, dy * cos - dx * sin
@@ -72,8 +79,12 @@ class LanesAlong:
             where, *edges = np.concatenate(row, axis=1)
             self._edges[:, where.astype(int), number] = edges
 
-    def places(self, x: Array, y: Array) -> list[tuple[float, float, int | None]]:
-        """Returns the stations, the offsets and the lanes of places, as ``Other`` has them."""
+    def places(
+        self, x: Array, y: Array, near: "NDArray[np.int64]"
+    ) -> tuple[list[float], list[float], list[int | None]]:
+        """Returns the stations, the offsets and the lanes of places, as ``Other`` has them; for ``near`` see
+        ``find``."""
         found = np.empty((len(x), 3))
-        find(x, y, self._points, self._edges, self._own, found)
-        return [(s, t, None if math.isnan(lane) else int(lane)) for s, t, lane in found.tolist()]
+        find(x, y, self._points, self._edges, self._own, near, found)
+        s, t, lanes = found.T.tolist()
+        return s, t, [None if math.isnan(lane) else int(lane) for lane in lanes]
