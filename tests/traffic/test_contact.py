@@ -239,3 +239,44 @@ def test_traffic_behind_a_collision_of_others_stops_and_collides_with_nobody() -
         pairs = shapely.STRtree(boxes).query(boxes, predicate="intersects").T
         met = [{others.actors[there[n]].name for n in pair} for pair in pairs.tolist() if pair[0] < pair[1]]
         assert met in ([], [two])
+
+
+@pytest.mark.parametrize(
+    ("scene", "side"),
+    [
+        ("ego v=30 t=-0.8; car parked right gap=50: open_door", "left"),
+        ("ego v=30 t=-0.8; van parked right gap=50: open_door left time=2", "left"),
+        ("ego v=30; car parked left gap=50: open_door right ttc=4", "right"),
+    ],
+)
+def test_a_door_opens_a_metre_into_the_way(scene: str, side: str) -> None:
+    run, _, others = parts(f"straight 200 | lanes=1 against=1 && {scene}")
+    car, door = others.states[:, 0], others.states[:, 1]
+    assert others.actors[1].kind == "door"
+    times = np.flatnonzero(np.isfinite(door[:, 0]))
+    body = box(car[0], others.actors[0].size[:2])
+    reach = [body.hausdorff_distance(body.union(box(door[n], others.actors[1].size[:2]))) for n in times]
+    assert reach[0] < 0.4 < 0.9 < max(reach) < 1.15  # m
+    turn = np.exp(-1j * car[0, 3]) * complex(*(door[-1, :2] - car[0, :2]))
+    assert 0 < turn.real < others.actors[0].size[0] / 2  # a front door
+    is_along = abs(np.angle(np.exp(1j * (car[0, 3] - run.drive["heading"][0])))) < 1.0
+    assert (turn.imag > 0) == ((side == "left") == is_along)
+    assert run.verdict is not None
+    assert (run.verdict.cause == "collision") == ("t=-0.8" in scene), run.description
+    assert all(each.other == "door 1" for each in run.verdict.incidents or () if each.contact)
+
+
+@pytest.mark.parametrize(("who", "v"), [("truck ahead v=50", 50), ("pickup ahead thw=3 v=60", 60)])
+def test_a_load_that_is_dropped_slides_and_lies_on_the_road(who: str, v: int) -> None:
+    _, drive, others = parts(f"straight 400 && ego v=50; {who}: drop time=3", "lane_centring")
+    load = others.states[:, [each.name for each in others.actors].index("lost_load 1")]
+    there = load[np.isfinite(load[:, 0])]
+    gone = np.hypot(*(there[-1, :2] - there[0, :2]))
+    assert gone == pytest.approx((v / 3.6) ** 2 / 2 / (0.5 * 9.81), rel=0.05)
+    assert there[-1, 4] == 0.0
+    assert drive.history[0].time == 3.0
+
+
+def test_a_bicycle_has_no_door() -> None:
+    with pytest.raises(BriefError, match="no door"):
+        read_plan("straight && bicycle parked right: open_door")

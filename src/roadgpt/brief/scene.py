@@ -64,6 +64,7 @@ MOST_MORE = 3
 CAR, SIGNALS = "tested car", "lights"
 """Whose events are not those of an actor."""
 LANES_AWAY = {"lane": 1, "far": 2}
+NARROW = 1.2  # m, the width of what has no doors
 MIRROR = "mirror"
 STRUCK: tuple[str, ...] = (*get_args(Face), MIRROR)
 """What of the tested car can be hit."""
@@ -210,6 +211,8 @@ class Role(Frozen):
 
     @model_validator(mode="after")
     def _hits_one(self) -> Self:
+        if any(each.what == "open_door" for each in self.actions) and SIZES[self.kind].width < NARROW:
+            raise ValueError(f"{one_of(self.kind)} has no door to open; leave it out")
         if self.hits and self.count != exactly(1):
             raise ValueError(f"one hits the {self.hits}, not {self.count}; write an actor for each")
         if self.hits and self.impact:

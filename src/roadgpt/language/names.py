@@ -5,13 +5,14 @@ from typing import Literal
 # fmt: off
 ActorKind = Literal["car", "van", "truck", "bus", "motorcycle", "bicycle", "adult", "child", "animal",
     "cones", "barrier", "lost_load", "pickup", "suv", "police_car", "ambulance", "fire_engine", "tram",
-    "e_scooter", "wheelchair_user", "person_with_pushchair", "dog", "deer", "tractor", "articulated_lorry"]
+    "e_scooter", "wheelchair_user", "person_with_pushchair", "dog", "deer", "tractor", "articulated_lorry",
+    "door"]
 Where = Literal["ahead", "behind", "lane", "far", "oncoming", "crossing", "parked", "ramp", "junction",
     "crosswalk", "beside", "roundabout"]
 What = Literal["keep", "brake", "stop", "speed", "follow", "open_gap", "swerve", "drift", "cut_in",
     "cut_out", "change_lane", "overtake", "merge", "pull_out", "turn_off", "turn_in", "turn_across", "cross",
     "run_light", "run_sign", "reverse", "wrong_way", "wait", "creep", "pass", "pull_over", "u_turn",
-    "cut_corner", "release"]
+    "cut_corner", "release", "open_door", "drop"]
 Flow = Literal["light", "medium", "dense"]
 WeatherKind = Literal["fog", "rain", "hail", "dust"]
 Light = Literal["night", "low_sun"]

@@ -13,6 +13,7 @@ from roadgpt.network.line import SPACING, driven_line
 from roadgpt.traffic.actor import HEADING, SIZES, STEP, STILL, Actor, FloatArray, TestedCar
 from roadgpt.traffic.course import Met
 from roadgpt.traffic.crash import crash
+from roadgpt.traffic.extras import COMES, Extra
 from roadgpt.traffic.following import ALONG
 from roadgpt.traffic.performer import Performer
 from roadgpt.traffic.places import parked_rows
@@ -37,7 +38,8 @@ class Script:
         there = [(np.array(at), each.size) for each in self._performers if (at := each.state())]
         free += [corners(state[:2], state[HEADING], np.array(size)) for state, size in there]
         rows = parked_rows(stage.world.scene, stage.road, stage.world, stage.seed, free)
-        kinds = [*(each.role.kind for each in self._performers), *(kind for kind, _ in rows)]
+        kinds = [each.role.kind for each in self._performers]
+        kinds += [*(each.kind for each in self._extras), *(kind for kind, _ in rows)]
         self.actors = [
             Actor(f"{kind} {kinds[: n + 1].count(kind)}", kind, SIZES[kind]) for n, kind in enumerate(kinds)
         ]
@@ -72,6 +74,8 @@ class Script:
             if aim is not None:
                 each.placed.aim(aim)
                 each.placed.check()
+        does = [(each, n, maneuver.what) for each in found for n, maneuver in enumerate(each.maneuvers)]
+        self._extras = [Extra(who, n) for who, n, what in does if what in COMES]
         return found
 
     def role(self, number: int) -> tuple[Performer, int, int | None]:
@@ -144,6 +148,8 @@ class Script:
         for each in self._performers:
             _touch(each, car)
             each.move(time, seen)
+        for extra in self._extras:
+            extra.move()
         for row, each in enumerate(self._performers if self._stage.aims else ()):
             foe = None if each.foe is None else self._performers.index(each.foe)
             if (
@@ -194,7 +200,9 @@ class Script:
 
     def _states(self) -> FloatArray:
         nowhere = (np.nan,) * 5
-        return np.vstack([*(each.state() or nowhere for each in self._performers), self._parked])
+        own = [each.state() or nowhere for each in self._performers]
+        own += [each.state() or nowhere for each in self._extras]
+        return np.vstack([*own, self._parked])
 
     @property
     def limited(self) -> dict[str, bool]:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from roadgpt.language.table import MANEUVERS
-from roadgpt.traffic.actor import STILL
+from roadgpt.traffic.actor import STEP, STILL
 from roadgpt.traffic.course import Course, Met
 from roadgpt.traffic.following import JAM, time_over
 from roadgpt.traffic.lateral import Lateral, Offsets
@@ -151,6 +151,10 @@ class Triggers:
                 return [
                     Phase(0.0, STOP, until="speed"), Phase(lasts=math.inf if lasts is None else lasts)
                 ]  # fmt: skip
+            case "open_door":
+                return [Phase(0.0, STOP, until="speed"), Phase(lasts=lasts or math.inf)]
+            case "drop":
+                return [Phase(lasts=STEP)]
             case "creep":
                 goal = (MANEUVERS["creep"].usual or 0.0) / 3.6 if to is None else to
                 return [Phase(goal, CHANGE, until="speed"), *([Phase(lasts=lasts)] if lasts else [])]
