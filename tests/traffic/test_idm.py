@@ -80,8 +80,51 @@ def test_behind_an_even_leader_the_gap_is_that_of_the_published_formula(v):
         lead += v * STEP
         along = (states[0, X] - x) * math.cos(heading) + (states[0, Y] - y) * math.sin(heading)
         gaps.append(lead - along - 4.7)
-    # Treiber, Hennecke, Helbing (2000), equation 6
-    assert gaps[-1] == pytest.approx((2.0 + 1.5 * v) / math.sqrt(1 - (v / limit) ** 4), rel=0.01)
+    # Treiber, Kesting (2013), 11.3.7: the improved model follows at the gap that one wants, below the limit
+    assert v < limit
+    assert gaps[-1] == pytest.approx(2.0 + 1.5 * v, rel=0.01)
+
+
+@pytest.mark.parametrize(("flow", "seed"), [("medium", 1), ("dense", 1)])
+def test_headways_and_changes_of_lane_are_those_of_real_traffic(flow, seed):
+    """At a point of a straight road with two lanes one way, one the other, at 50 km/h: the headways of 1,000
+    vehicles, counted by when their fronts pass; and how long the lateral movements of the tracks last."""
+    own = stage("straight 600 | lanes=2 against=1 map_size=700", seed)
+    mover = IdmMover(own._replace(world=own.world.changed(speed_limit=50 / 3.6)), flow)
+    states, ahead, left = mover.start(None), mover.lanes.sample[0, 3], own.road.at(300.0, 0.0)
+    along, across = (
+        np.array([math.cos(ahead), math.sin(ahead)]),
+        np.array([-math.sin(ahead), math.cos(ahead)]),
+    )
+    passed, offsets, count = {}, {}, 0
+    for tick in range(40_000):
+        before, states = states, mover.move(tick * STEP, None, NOBODY)
+        there = np.flatnonzero(~np.isnan(states[: len(before), X]) & ~np.isnan(before[:, X]))
+        halves = np.array([mover.actors[n].size.length / 2 for n in there])
+        now = states[there, :2] - left[:2]
+        way = np.sign(np.cos(states[there, HEADING] - ahead))
+        fronts = [(each @ along) * way + halves for each in (before[there, :2] - left[:2], now)]
+        for n in np.flatnonzero((fronts[0] < 0) & (fronts[1] >= 0)).tolist():
+            share = fronts[0][n] / (fronts[0][n] - fronts[1][n])
+            passed.setdefault(math.floor(now[n] @ across / 3.5), []).append((tick + share) * STEP)
+            count += 1
+        for n, t in zip(there.tolist(), (now @ across).tolist(), strict=True):
+            offsets.setdefault(n, []).append(t)
+        if count >= 1000:
+            break
+    headways = np.concatenate([np.diff(times) for times in passed.values()])
+    assert 0.08 <= (headways < 1.0).mean() <= 0.12
+    assert 0.6 <= headways.std() / headways.mean() <= 1.1
+    lasts = []
+    for row in map(np.array, offsets.values()):
+        moves = np.flatnonzero(np.diff(np.r_[0, np.abs(np.diff(row)) > 1e-9, 0]))
+        for first, last in moves.reshape(-1, 2).tolist():
+            if first > 0 and last < len(row) - 1 and abs(row[last] - row[first]) > 3.0:
+                is_on = np.minimum(np.abs(row - row[first]), np.abs(row - row[last]))[first:last] > 0.01
+                lasts.append(is_on.sum() * STEP)
+    assert len(lasts) > 50
+    assert np.mean(lasts) == pytest.approx(4.6, abs=0.5)  # Toledo, Zohar (2007)
+    assert np.std(lasts) == pytest.approx(2.3, abs=0.5)
 
 
 @pytest.mark.parametrize("plan", PLANS)
@@ -217,7 +260,7 @@ def test_who_is_met_head_on_in_its_own_lane_brakes():
     lane = mover.lanes.begins.nonzero()[0][0]
     mover.enter(lane, 10.0, 15.0)
     one = mover.lanes.sample[mover.lanes.first[lane] + 120]
-    for tick in range(20):
+    for tick in range(25):
         along = 120 - 10.0 * tick * STEP
         there = mover.lanes.sample[mover.lanes.first[lane] + int(along)]
         states = mover.move(tick * STEP, None, body(there[0], there[1], one[3] + math.pi, 10.0))

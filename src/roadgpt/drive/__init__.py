@@ -66,7 +66,8 @@ class Driver(Protocol):
     A driver may have an attribute ``name``. The Drive records this name; without a name, the Drive records
     the name of the driver's class. A driver that lets somebody else drive for a while, such as the person at
     the wheel, names them in an attribute ``handed_to``, which is None while it drives itself. The Drive
-    records it, and the Verdict says whose a failure is."""
+    records it, and the Verdict says whose a failure is. A driver that does itself what a scene tells the car
+    names these actions in ``follows``: it finds them in ``view.task``."""
 
     def steer(self, view: View) -> Command:
         """Returns the command for the next control step, which lasts ``view.dt`` seconds."""

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.errors import SimulationError, UsageError, needed
+from roadgpt.language.names import What
 from roadgpt.reading import arrays_in, json_of, strictly
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ COLUMNS = {
 }
 """Names of the columns in their order, each with its unit and meaning."""
 TOLD = ("missed", "limited", "stopped")  # of others: tuples of texts
-RARE = ("handovers", "moves", "lights", *TOLD)  # of a header, only where they are not empty
+RARE = ("handovers", "moves", "lights", "tasks", *TOLD)  # of a header, only where they are not empty
 UNHEEDED = "unheeded"
 OTHERS = "others"
 """Array of the states of others: whole numbers (samples, actors, 5); NaN, once GONE, of who is away."""
@@ -116,6 +117,22 @@ class LaneMove(NamedTuple):
     by: float
 
 
+class GivenTask(NamedTuple):
+    """What a scene told the car to do, and its driver was to do itself."""
+
+    did: str
+    """In words."""
+    what: What
+    start: float
+    """When it was to begin, in seconds, and ``end``, by when it was to be done."""
+    end: float
+    goal: float
+    """The speed to come to in m/s, or by how many metres to the left the lane moved."""
+    at: float | None = None
+    """The station in metres before which the front was to stop, or from which on it was to be in its new
+    lane."""
+
+
 class Columns(Mapping[str, FloatArray]):
     """Maps names to read-only arrays of equal length."""
 
@@ -173,6 +190,8 @@ class Drive:
     unheeded: FloatArray | None = None
     """What the driver commanded while the script had the wheel or the pedals: steer, throttle and brake,
     shape (n - 1, 3), NaN elsewhere; None if the script had neither."""
+    tasks: tuple[GivenTask, ...] = ()
+    """What the scene told the driver to do itself, in order."""
     history: "tuple[Event, ...]" = ()
     """What the scene prescribes of its actors and of the tested car, each with whether, when and where it
     happened; empty in drives of older versions."""
@@ -217,6 +236,9 @@ class Drive:
         for each in self.handovers:
             if each.by == SCRIPT:
                 found &= ~((time > each.start) & (time <= each.end + RETURNS))
+        for task in self.tasks:
+            if task.what == "change_lane":
+                found &= ~((time > task.start) & (time <= task.end + RETURNS))
         return found
 
     @property
@@ -341,6 +363,7 @@ def unpacked(header: Any, columns: Columns, states: NDArray[Any] | None) -> Driv
         car=Box(**{name: float(value) for name, value in header["car"].items()}),
         handovers=strictly(tuple[Handover, ...], header.get("handovers", ())),
         moves=strictly(tuple[LaneMove, ...], header.get("moves", ())),
+        tasks=strictly(tuple[GivenTask, ...], header.get("tasks", ())),
         others=None if states is None else _tracks(header[OTHERS], states, float(columns["time"][-1])),
         lights=bool(header.get("lights", False)),
         missed=missed,

@@ -19,22 +19,23 @@ keep to moves: the driver is started again for a road whose driven lane is the n
 the pedals as its new way needs, and goes on there."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from roadgpt.brief.scene import AROUND, CAR, Event, Mark
-from roadgpt.drive.drive import PEDALS, SCRIPT, Box, LaneMove
+from roadgpt.drive.drive import PEDALS, RETURNS, SCRIPT, Box, GivenTask, LaneMove
 from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.driving_line import BEFORE_LINE, pedals_for
 from roadgpt.drive.keeping_distance import HALTED, LEAST_BRAKE, ROLLS
 from roadgpt.drive.shunt import Shunt
-from roadgpt.drive.view import View
-from roadgpt.errors import SceneError
+from roadgpt.drive.view import DrivingTask, View
+from roadgpt.errors import DriverError, SceneError
 from roadgpt.geometry import wrap_angle
 from roadgpt.language.names import Side
-from roadgpt.language.table import MANEUVERS, THINGS, VEHICLES
+from roadgpt.language.table import CUES, MANEUVERS, THINGS, VEHICLES
 from roadgpt.network.line import driven_line
 from roadgpt.traffic.actor import STILL
 from roadgpt.traffic.course import Course, Met
@@ -72,6 +73,8 @@ ROW = 15.0  # m between those that stand in one row
 PASSED = {"overtake": 10.0, "pass": 2.0}  # m, behind its rear, where it goes back
 
 
+TASKS = ("speed", "brake", "stop", "creep", "change_lane")
+"""What a driver may do itself."""
 ERRORS = ("run_light", "run_sign")
 """What it does although the driver brakes."""
 EMERGENCY, CLOSE, SOON, SIDEWAYS = 0.6, 8.0, 3.0, 15.0
@@ -84,8 +87,22 @@ CORNER = math.radians(25.0)  # less is no turn at a junction
 class ScriptHand:
     """What a scene tells the tested car to do, during one drive."""
 
-    def __init__(self, road: "Road", world: "World", box: Box, seed: int, traffic: "Traffic | None") -> None:
-        """Draws the numbers. Raises SceneError if the road has no place that an action names."""
+    def __init__(
+        self,
+        road: "Road",
+        world: "World",
+        box: Box,
+        seed: int,
+        traffic: "Traffic | None",
+        follows: Sequence[str] = (),
+    ) -> None:
+        """Draws the numbers. What the driver ``follows`` it does itself. Raises SceneError if the road has no
+        place that an action names, DriverError if there is no such task."""
+        if wrong := sorted({*follows} - {*TASKS}):
+            raise DriverError(
+                f"a driver cannot follow {', '.join(wrong)}; name some of {', '.join(TASKS)} in its follows"
+            )
+        self._follows, self._tasks = frozenset(follows), dict[int, GivenTask]()
         self._seed, self._world, self._box, self._traffic = seed, world, box, traffic
         self.road = road
         """That whose driven lane is the one that the car is to keep to."""
@@ -224,6 +241,8 @@ class ScriptHand:
         self._see(view)
         self._go_on(view)
         self._begin_in_time(view)
+        if self._is_task:
+            return command, None
         if not self._phases and not (self._stands and not self._begun):
             if self._is_left_parked and not self.is_over:  # its driver pulls out
                 self._move(self._back(), LATERAL["pull_out"])
@@ -270,6 +289,52 @@ class ScriptHand:
         return self._is_left_parked and all(each.what != "release" for each in self._maneuvers)
 
     @property
+    def _is_task(self) -> bool:
+        """Whether its driver does now what the scene tells."""
+        return bool(self._phases) and self._begun - 1 in self._tasks
+
+    @property
+    def is_changing(self) -> bool:
+        """Whether its driver changes lanes now by itself."""
+        return any(
+            each.what == "change_lane" and self._triggers.time <= each.end for each in self._tasks.values()
+        )
+
+    @property
+    def tasks(self) -> tuple[GivenTask, ...]:
+        """What its driver was to do itself so far."""
+        return tuple(self._tasks.values())
+
+    @property
+    def task(self) -> DrivingTask | None:
+        """What its driver is to do itself, now or next."""
+        number = self._begun - 1 if self._is_task else self._begun
+        if number >= len(self._maneuvers) or self._maneuvers[number].what not in self._follows:
+            return None
+        each = self._maneuvers[number]
+        n = {name: value for name, value in each.n.items() if name not in CUES}
+        if number in self._places:
+            n["distance"] = self._places[number] - self._front
+        if self._is_task and each.what != "change_lane":
+            goal = self._phases[0].goal
+            n |= {"to": 0.0 if goal is None else goal, "accel": self._phases[0].pull}
+        return DrivingTask(each.what, n, each.action.side, self._is_task)
+
+    def _hand_over(self, number: int, view: View) -> None:
+        """Gives the driver as a task what begins."""
+        each, v, phase, at = self._maneuvers[number], self._speed.v, self._phases[0], None
+        if each.what == "change_lane":
+            start, at, goal = self.moves[-1]
+            lasts = (at - start) / max(v, 1.0)
+        else:
+            goal = phase.goal or 0.0
+            lasts = abs(v - goal) / phase.pull
+            if number in self._places:
+                at, lasts = self._line.to_road(self._places[number] + BEFORE_LINE), lasts + v / STOP
+        end = view.time + LONGER * lasts + RETURNS
+        self._tasks[number] = GivenTask(self._did(number), each.what, view.time, end, goal, at)
+
+    @property
     def _holds(self) -> bool:
         """Whether it stands, or goes on as fast as it is, for some time."""
         return bool(self._phases) and self._phases[0].until is None
@@ -278,7 +343,7 @@ class ScriptHand:
         before, self._speed.v = self._speed.v, max(view.vx, 0.0)
         self._course.s = self._line.from_road(view.s) + self._box.ahead
         self._triggers.time = view.time
-        by_driver = not self._phases or self._hands == "wheel"
+        by_driver = not self._is_task and (not self._phases or self._hands == "wheel")
         is_firm = by_driver and before - self._speed.v > FIRM * view.dt
         self._firm = self._firm + view.dt if is_firm else 0.0
         did = f"while {self._did(self._begun - 1)}" if self._phases and self._is_refused else ""
@@ -389,6 +454,8 @@ class ScriptHand:
                 self._phases.append(Phase(lasts=math.inf))
             if self._phases:
                 self._enter(view)
+                if each.what in self._follows:
+                    self._hand_over(number, view)
 
     def _wait(self, number: int, maneuver: Maneuver) -> float:
         """Returns in how many seconds a maneuver begins, as far as it can be seen now."""
@@ -533,6 +600,9 @@ class ScriptHand:
             self._planned = min(max(self._planned, v - AHEAD), v + AHEAD)
 
     def _is_over(self, phase: Phase, lasted: float) -> bool:
+        task = self._tasks.get(self._begun - 1)
+        if task is not None and phase.lasts is None and self._triggers.time > task.end:
+            return True
         if phase.lasts is not None and lasted >= phase.lasts - 1e-6:
             return True
         if phase.until == "there":
@@ -555,7 +625,8 @@ class ScriptHand:
 
     def _compare(self, phase: Phase, lasted: float) -> None:
         """Notes that a change of speed was slower than told."""
-        if phase.goal is None or phase.until != "speed" or self._begun - 1 in self._places:
+        is_other = self._begun - 1 in (*self._places, *self._tasks)
+        if phase.goal is None or phase.until != "speed" or is_other:
             return
         change = abs(self._v - phase.goal)
         if change > STEADY and lasted > LONGER * change / phase.pull + SETTLES:

@@ -1,13 +1,14 @@
 """Defines the View that a driver gets and the Command that it returns at every control step."""
 
 import math
+from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.language.names import ActorKind
+from roadgpt.language.names import ActorKind, What
 from roadgpt.language.table import ROAD_USERS, VEHICLES
 
 if TYPE_CHECKING:
@@ -93,6 +94,20 @@ class Others(tuple[Other, ...]):
         return np.array([(*each[1:7], each.kind in VEHICLES) for each in self], float).reshape(-1, 7)
 
 
+class DrivingTask(NamedTuple):
+    """What a scene tells the car to do, and its driver does itself, because it names that in ``follows``."""
+
+    what: What
+    """Such as "change_lane"; the page Plans lists them."""
+    numbers: Mapping[str, float]
+    """Those of the scene, in m, m/s, m/s^2 and s. What changes the speed has "to", the speed to come to, and
+    "accel" with which, once it has begun; "distance" is how far the front of the car is from the place where
+    it is to stop."""
+    side: Literal["left", "right"] | None
+    has_begun: bool
+    """Whether it is to be done now; False: it is what comes next."""
+
+
 class View(NamedTuple):
     """The current state of the car, with its road and world.
 
@@ -152,6 +167,9 @@ class View(NamedTuple):
     signs: tuple[SignAhead, ...] = ()
     """The signs on the route, nearest first: to stop or to give way, and the speed limits that its lanes have
     of their own. Empty if a simulator does not tell them."""
+    task: DrivingTask | None = None
+    """What the car is to do by the scene, if the driver names that in its ``follows``; None if there is
+    nothing."""
 
 
 class CameraSpec(NamedTuple):

@@ -40,10 +40,10 @@ class InFlows(NamedTuple):
     """Of all vehicles. Close to the vehicle kilometres of German federal roads, of which heavy goods vehicles
     drive 5 to 9 % (BASt, automatic counts)."""
     headway: float
-    """In seconds."""
+    """The median of the drivers in seconds, without the 2 m at rest; ours: see ``roadgpt.traffic.idm``."""
     acceleration: float
     braking: float
-    """In m/s^2. Cars: M. Treiber, A. Hennecke, D. Helbing (2000) with 1.5 s; trucks and buses accelerate as
+    """In m/s^2. Cars: M. Treiber, A. Hennecke, D. Helbing (2000); trucks and buses accelerate as
     in M. Treiber, A. Kesting, Traffic Flow Dynamics (2013), table 11.2."""
     fastest: float
     """In m/s; 90 and 100 km/h for trucks and buses (Directives 92/6/EEC and 2002/85/EC)."""

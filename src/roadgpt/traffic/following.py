@@ -2,15 +2,15 @@
 
 Following: the Intelligent Driver Model (M. Treiber, A. Hennecke, D. Helbing, Congested traffic states in
 empirical observations and microscopic simulations, Phys. Rev. E 62, 2000), above the desired speed as in M.
-Treiber, A. Kesting, Traffic Flow Dynamics (2013), 11.3.7. Everybody within a vehicle's lanes ahead is a
-leader, also who only reaches into them, who comes towards it, and the tested car. Nobody brakes harder than
-HARDEST, nor drives faster than from where it can still stop behind its leader (P. G. Gipps, A behavioural
-car-following model, Transp. Res. B 15, 1981). All accelerations stay in the friction circle at the vehicle's
-place and grade.
+Treiber, A. Kesting, Traffic Flow Dynamics (2013), 11.3.7, and behind leaders as improved there. Everybody
+within a vehicle's lanes ahead is a leader, also who only reaches into them, who comes towards it, and the
+tested car. Nobody brakes harder than HARDEST, nor drives faster than from where it can still stop behind its
+leader (P. G. Gipps, A behavioural car-following model, Transp. Res. B 15, 1981). All accelerations stay in
+the friction circle at the vehicle's place and grade.
 
 Changes of lane: MOBIL without politeness (A. Kesting, M. Treiber, D. Helbing, General lane-changing model
-MOBIL, Transp. Res. Record 1999, 2007). A change lasts CHANGE seconds; from its first moment on the vehicle
-belongs to both lanes: it follows the leaders of both, and those behind it in both follow it.
+MOBIL, Transp. Res. Record 1999, 2007). From the first moment of a change on the vehicle belongs
+to both lanes: it follows the leaders of both, and those behind it in both follow it.
 
 Junctions: a vehicle enters a junction only with a grant for its way through. A grant is given when nobody
 holds or occupies a way that meets it, and nobody to whom the vehicle gives way would arrive before it has
@@ -29,14 +29,14 @@ from roadgpt.traffic.actor import STEP, FloatArray
 from roadgpt.traffic.lane_map import ACROSS, CALM, PF, PG, PV, IntArray, LaneMap, across, place_on, touched
 
 S, V, LENGTH, WIDTH, FACTOR, TOP, HEADWAY, PULLS, BRAKES, ASIDE, BEGAN, PROGRESS, WAIT, A_NEXT = range(14)
-PULL, BRAKE, GRIP, LASTS, DENIED = range(14, 19)
+PULL, BRAKE, GRIP, LASTS, DENIED, CHANGES = range(14, 20)
 """Columns of numbers of a vehicle: the station of its middle in its lane, its speed, length and width; the
 share of speed limits and the top speed that it drives; IDM's T, a and b; its offset to the left of its
 lane's middle, that offset when its change of lane began, and the share of the change that is done (1: none
 under way); for how long it has stood first in line; its acceleration in the next step; IDM's a and b, the
-hardest braking and the seconds of a change of lane that friction and grade allow at its place; and the
-hardest braking that they denied it."""
-NUMBERS = DENIED + 1
+hardest braking and the seconds of a change of lane that friction and grade allow at its place; the hardest
+braking that they denied it; and the seconds of a change of lane that it takes itself."""
+NUMBERS = CHANGES + 1
 AT, LAST, GRANTED, OLD, STATE, HAS_STOPPED, GOAL = range(7)
 """Columns of whole numbers: which lane of its way it is in, the number of lanes of its way, up to which of
 them it has a grant, the lane that it is leaving (-1: none), its state, whether it has stood at the stop
@@ -53,12 +53,13 @@ GENTLY = 1.5  # m/s^2, before bends
 BESIDE_ME = 4.0  # m/s^2, against somebody who moves in beside
 HORIZON = 150.0  # m
 LINE = 1.0  # m, between the front of a waiting vehicle and the line
-CHANGE, PEAK, WIDE = 4.0, 5.78, 3.75  # s; m/s^2 sideways for each m at 1 s; m from lane to lane
+PEAK, WIDE = 6.3, 4.0  # m/s^2 sideways for each m at 1 s, also if it brakes meanwhile; m from lane to lane
+LONGER = 1.02  # by which a change under way lasts longer after a step at most, so that nobody turns at once
 LEAST_WAY = 15.0  # m, of way that a change takes at least
 FASTER = 2.0  # m/s, by which one may become faster during a change that has to be done before a junction
 EVERY = 10  # steps, after which a vehicle considers a change again
 SLOWEST_CHANGE = 3.0  # m/s, below which nobody changes lanes without need
-GAIN = 0.3  # m/s^2, by which a change has to pay
+GAIN = 0.4  # m/s^2, by which a change has to pay
 SAFE = 2.0  # m/s^2, that a change may cost the follower
 URGENT = 4.0  # m/s^2, the same where the lane ends
 MARGIN = 1.0  # s, between leaving a conflict and the arrival of somebody with priority
@@ -110,6 +111,20 @@ def idm(
 
 
 @compiled
+def closing(
+    v: float, wanted: float, gap: float, leader: float, pull: float, brake: float, headway: float
+) -> float:
+    """Returns the acceleration in m/s^2 behind a leader by the improved IDM: one follows as far as one wants
+    also when nearly as fast as one wants."""
+    free = idm(v, wanted, math.inf, leader, pull, brake, headway)
+    desired = JAM + max(0.0, v * headway + v * (v - leader) / (2.0 * math.sqrt(pull * brake)))
+    z = desired / max(gap, 0.1)
+    if z >= 1.0:
+        return min(free, 0.0) + pull * (1.0 - z * z)
+    return free * (1.0 - z ** (2.0 * pull / free)) if free > 1e-3 else free
+
+
+@compiled
 def hold(crowd: Crowd, i: int) -> None:
     """Writes what friction and grade allow a vehicle at its place."""
     lanes, row, v = crowd.lanes, crowd.numbers[i], crowd.numbers[i, V]
@@ -119,7 +134,8 @@ def hold(crowd: Crowd, i: int) -> None:
     circle, falls = sample[PG], sample[PF]
     taken = min(ACROSS, CALM * circle) * (v / sample[PV]) ** 2
     spare = max(SIDEWAYS * circle - taken, LEAST_GRIP)
-    row[LASTS] = max(CHANGE, math.sqrt(PEAK * WIDE / spare))
+    lasts = max(row[CHANGES], math.sqrt(PEAK * WIDE / spare))
+    row[LASTS] = lasts if row[PROGRESS] >= 1.0 else min(max(lasts, row[LASTS]), LONGER * row[LASTS])
     if row[PROGRESS] < 1.0:
         taken += PEAK * abs(row[BEGAN]) * (v / max(v * row[LASTS], LEAST_WAY)) ** 2
     left = math.sqrt(max(circle * circle - taken * taken, 0.0))
@@ -153,11 +169,11 @@ def _seen(row: FloatArray, entry: FloatArray, ahead: float, v: float, wanted: fl
     if entry[3] == ASKS:
         if gap < v * v / (2.0 * _easy(row)) + JAM:
             return math.inf, math.inf
-        return idm(v, wanted, gap, 0.0, row[PULL], row[BRAKE], row[HEADWAY]), math.inf
+        return closing(v, wanted, gap, 0.0, row[PULL], row[BRAKE], row[HEADWAY]), math.inf
     if gap <= 0.0:
         return -BESIDE_ME, math.inf
     return (
-        idm(v, wanted, gap, entry[3], row[PULL], row[BRAKE], row[HEADWAY]),
+        closing(v, wanted, gap, entry[3], row[PULL], row[BRAKE], row[HEADWAY]),
         _stoppable(v, gap, entry[3], row[GRIP]),
     )
 
@@ -450,7 +466,7 @@ def _change(crowd: Crowd, i: int, side: int, own: float, wanted: float, count: i
             gap = low - row[LENGTH] / 2.0
             if gap < 1.0 or entry[3] < -1.0:
                 return -math.inf
-            best = min(best, idm(row[V], wanted, gap, entry[3], row[PULL], row[BRAKE], row[HEADWAY]))
+            best = min(best, closing(row[V], wanted, gap, entry[3], row[PULL], row[BRAKE], row[HEADWAY]))
         else:
             gap = -row[LENGTH] / 2.0 - high
             v = max(entry[3], 0.0)
@@ -563,13 +579,13 @@ def _decide(crowd: Crowd, i: int, count: int, may_change: bool) -> int:
     alone = least
     line = _to_stop(crowd, i, count)
     if line < math.inf:
-        least = min(least, idm(v, wanted, max(line + JAM - LINE, 0.1), 0.0, pull, brake, headway))
+        least = min(least, closing(v, wanted, max(line + JAM - LINE, 0.1), 0.0, pull, brake, headway))
         if line > 0.0:
             fastest = min(fastest, _stoppable(v, line + 0.5, 0.0, row[GRIP]))
     ends = lanes.ends[lane]
     if ends:
         left = lanes.usable[lane, 1] - row[S] - row[LENGTH] / 2.0
-        least = min(least, idm(v, wanted, max(left, 0.1), 0.0, pull, brake, headway))
+        least = min(least, closing(v, wanted, max(left, 0.1), 0.0, pull, brake, headway))
         fastest = min(fastest, _stoppable(v, max(left, 0.0) + 0.5, 0.0, row[GRIP]))
         row[WAIT] += STEP * (v < STANDING)
     if may_change and row[PROGRESS] >= 1.0 and lanes.junction[lane] < 0 and (v > SLOWEST_CHANGE or ends):
@@ -619,7 +635,7 @@ def step(crowd: Crowd, bodies: FloatArray, room: FloatArray, tick: int) -> None:
     Args:
         crowd: Everybody; the state of the tested car is its present one.
         bodies: Others whom this step does not move: states, length and width, ``(m, 7)``.
-        room: Gets the metres at the start of each lane that are free.
+        room: Gets the metres at the start of each lane that are free, and the speed of who is there.
         tick: The number of the step."""
     numbers, whole, states, entries = crowd.numbers, crowd.whole, crowd.states, crowd.entries
     count = _boxes(crowd, bodies)
@@ -648,7 +664,8 @@ def step(crowd: Crowd, bodies: FloatArray, room: FloatArray, tick: int) -> None:
     room[:] = math.inf
     for n in range(count):
         lane = int(entries[n, 0])
-        room[lane] = min(room[lane], entries[n, 1])
+        if entries[n, 1] < room[lane, 0]:
+            room[lane, 0], room[lane, 1] = entries[n, 1], max(entries[n, 3], 0.0)
     for i in range(len(numbers)):
         if i != TESTED and whole[i, STATE] != ABSENT:
             _move(crowd.lanes, numbers[i], whole[i], crowd.ways[i])

@@ -21,6 +21,7 @@ from roadgpt.verdict.verdict import STANDS, Cause, Incident, IncidentKind
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
+    from roadgpt.drive.drive import GivenTask
     from roadgpt.road import Road, World
     from roadgpt.verdict.measures import Measures
 
@@ -32,6 +33,7 @@ GONE = 0.9  # share of the car outside its lane; a car that slides wide and come
 ALONG = math.radians(30.0)  # between the heading of the car and that of a wrong road on which it drives
 BACKWARDS, BACK = math.radians(90.0), 1.0  # between the headings of car and route; s of driving the wrong way
 STOP_WITHIN = 4.0  # m before the line
+IN_LANE, NEAR = 0.5, 0.5  # m from the middle, m/s from the speed at which a task is done
 EDGE = 0.02  # m, by which a tyre may be beyond the polygon of the paved area, whose chords cut bends by 2 mm
 CONFLICT, ENCROACHED = 0.95, 1.0  # s
 APART = 3.0  # s between two near misses
@@ -193,6 +195,28 @@ def _stops_missed(case: Judged) -> list[Incident]:
     return case.began("stop line", missed)
 
 
+def _is_done(case: Judged, task: "GivenTask") -> bool:
+    """Returns whether a driver did what it was told, by how the car moved."""
+    drive = case.drive
+    when = np.flatnonzero((drive["time"] >= task.start) & (drive["time"] <= task.end))
+    s, v, t = (drive[name][when] for name in ("s", "speed", "t"))
+    if not len(when):
+        return False
+    if task.what == "change_lane":
+        aside = np.abs(t - case.world.profile_of(case.road).middle(s))
+        return bool(((aside < IN_LANE) & (s >= (task.at or 0.0))).any())
+    if task.goal == 0.0:
+        front = s + drive.car.ahead + drive.car.length / 2
+        return bool(((v < STOOD) & (front <= (task.at or np.inf))).any())
+    return bool(((v >= task.goal - NEAR) if v[0] < task.goal else (v <= task.goal + NEAR)).any())
+
+
+def _tasks_missed(case: Judged) -> list[Incident]:
+    last = float(case.drive["time"][-1])
+    missed = [each for each in case.drive.tasks if not _is_done(case, each)]
+    return [one for each in missed for one in case.began("task", [min(each.end, last)], each.did)]
+
+
 class Criterion(NamedTuple):
     """Something that a test is judged by."""
 
@@ -211,7 +235,7 @@ class Criterion(NamedTuple):
 
 
 STEERED: Set[str] = {"out of lane", "wrong turn", "wrong way", "off road"}
-MEETING: Set[str] = {"collision", "near miss"}
+MEETING: Set[str] = {"collision", "near miss", "task"}
 """What the wheel decides, and what is judged whoever had the wheel: the driver can brake at any time."""
 ROUTE, OTHERS = frozenset({"route"}), frozenset({"others"})
 CRITERIA = (
@@ -255,6 +279,11 @@ CRITERIA = (
         "0.1 m/s) while its front was within the last 4 m before the line",
         _stops_missed, "no stop at a stop sign",
         "did not stop at the stop sign {reached}: it crossed the line {fast}", SUCCESS, ROUTE,
+    ),
+    Criterion(
+        "task", "ours: what the scene tells, and the driver follows, is not done within 1.2 times as long as "
+        "told, and 2 s: a speed within 0.5 m/s, a stop, the new lane within 0.5 m",
+        _tasks_missed, "a task not done", "did not do what it was told {reached}: {whom}", SUCCESS,
     ),
     Criterion(
         "collision", "UN R157: the first contact with each of the others (``verdict.contact``); none that "
@@ -330,5 +359,6 @@ def first_failure(
             "tolerance"
         )
     other = next((row for row in rows if row[1].failed and row[1].name != "out of lane"), None)
-    is_other = other and (first is None or (drive.others is not None and other[0] <= step))
+    is_before = other and other[0] <= step and (drive.others is not None or other[1].name == "task")
+    is_other = other and (first is None or is_before)
     return other if other and is_other else (step, first)

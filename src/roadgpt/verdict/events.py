@@ -28,7 +28,11 @@ def events_of(case: Judged, incidents: Sequence[Incident]) -> tuple[Event, ...]:
     found = [*map(_ended, drive.history), *_lights(case), *_out_of_lane(case)]
     for each in incidents:
         if each.kind != "out of lane":
-            what = f"{NAMED[each.kind].said} with {each.other}" if each.other else NAMED[each.kind].said
+            what = (
+                f"{NAMED[each.kind].said} {'for' if each.kind == 'task' else 'with'} {each.other}"
+                if each.other
+                else NAMED[each.kind].said
+            )
             found.append(Event(CAR, what, each.at_time, each.at_s))
     for hand in drive.handovers:
         s = float(np.interp(hand.start, drive["time"], drive["s"]))

@@ -28,7 +28,7 @@ car kept its lane, but what the scene prescribes did not happen: for its driver 
 Cause = Literal[
     "out of lane", "fell", "rolled", "crashed", "sank", "stuck", "timeout", "collision", "wrong turn",
     "wrong way", "stop line",
-    "red light", "failure to yield",
+    "red light", "failure to yield", "task",
 ]  # fmt: skip
 DEPARTURES: tuple[Cause, ...] = ("out of lane", "fell", "rolled", "crashed", "sank")
 """The causes by which the car is beside its lane."""
@@ -44,7 +44,7 @@ Fault = Literal["ego", "other", "both", "nobody"]
 Offence = Literal["red light", "stop", "priority", "wrong way", "speed", "lane", "distance"]
 IncidentKind = Literal[
     "out of lane", "wrong turn", "wrong way", "off road", "stop line", "red light", "failure to yield",
-    "collision", "near miss", "blocked", "speeding",
+    "collision", "near miss", "blocked", "speeding", "task",
 ]  # fmt: skip
 
 

@@ -18,7 +18,7 @@ from roadgpt.drive.driver_guard import DriverGuard
 from roadgpt.drive.isolation.process import serve
 from roadgpt.drive.loading import load_driver
 from roadgpt.drive.outlook import Outlook
-from roadgpt.drive.view import LightAhead, Other, View
+from roadgpt.drive.view import DrivingTask, LightAhead, Other, View
 from roadgpt.errors import DriverError, UsageError
 from roadgpt.road import Road, World  # now, and not while the driver's time counts
 
@@ -68,7 +68,8 @@ class _DriverHost:
         camera = camera_of(driver)
         self._guard = DriverGuard(driver)
         self._files.add(getattr(driver, "uses", ()))
-        return {"name": self._guard.name, "camera": camera, "files": self._files.told()}
+        follows = [*map(str, getattr(driver, "follows", ()))]
+        return {"name": self._guard.name, "camera": camera, "files": self._files.told(), "follows": follows}
 
     def files(self) -> dict[str, Any]:
         """Returns the names of all files that the driver has used so far."""
@@ -91,6 +92,7 @@ class _DriverHost:
         image: Any,
         others: tuple[Other, ...],
         lights: tuple[LightAhead, ...],
+        task: DrivingTask | None,
     ) -> dict[str, Any]:
         """Asks the driver for a command; ``place`` has the fields of a View before ``road`` and ``world``,
         and ``motion`` those after them."""
@@ -98,7 +100,8 @@ class _DriverHost:
             self._picture = image
         picture = None if image is None else self._picture
         ahead, signs = self._outlook.at(place[STATION]), self._outlook.signs(place[STATION])
-        view = View._make((*place, self._road, self._world, *motion, picture, *ahead, others, lights, signs))
+        own = *place, self._road, self._world, *motion, picture
+        view = View._make((*own, *ahead, others, lights, signs, task))
         return {"command": self._guard.ask(view), "handed_to": self._guard.handed_to}
 
 

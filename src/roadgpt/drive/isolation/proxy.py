@@ -112,7 +112,7 @@ class IsolatedDriver:
                 raise _error(answer) from _TraceError(answer["trace"])
             self.name: str = answer["name"]
             self.camera = None if answer["camera"] is None else CameraSpec(*answer["camera"])
-            self.files = _digests(spec, answer["files"])
+            self.files, self.follows = _digests(spec, answer["files"]), tuple(answer["follows"])
             return process
 
     def all_files(self) -> dict[str, str]:
@@ -135,7 +135,7 @@ class IsolatedDriver:
             image = "same"
         elif image is not None:
             self._picture, image = image, np.array(image, np.uint8)
-        around = view.others, view.lights
+        around = view.others, view.lights, view.task
         answer = self._asked(ONE_ANSWER, view.time, "steer", view[:9], view[11:15], image, *around)
         self.handed_to = answer["handed_to"]
         return Command(*answer["command"])

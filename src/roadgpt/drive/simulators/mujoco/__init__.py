@@ -12,7 +12,7 @@ import numpy as np
 
 from roadgpt.brief.junctions import RAMPS
 from roadgpt.drive.camera_sensor import CameraSensor, camera_of
-from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive
+from roadgpt.drive.drive import COLUMNS, SCRIPT, Box, Columns, Drive
 from roadgpt.drive.drive_monitor import DriveMonitor
 from roadgpt.drive.driver_guard import DriverGuard
 from roadgpt.drive.lane_position import LanePolygon
@@ -81,7 +81,7 @@ class MujocoSimulator:
         if world.scene.has_script:
             from roadgpt.drive.script_hand import ScriptHand  # only drives with one load it
 
-            script = ScriptHand(road, world, self.car.box, seed, traffic)
+            script = ScriptHand(road, world, self.car.box, seed, traffic, getattr(driver, "follows", ()))
             road = script.road
         guard, camera = DriverGuard(driver, script=script), camera_of(driver)
         vehicle = Vehicle.on(road, world, self.car)
@@ -115,10 +115,13 @@ class MujocoSimulator:
             if company is not None:
                 lights = company.lights(now[station], step * CONTROL)
             here = (step * CONTROL, *place, road, world, steer, CONTROL, vx, vy, image)
-            view = View._make((*here, *ahead, seen, lights, outlook.signs(now[station])))
+            task = script and script.task
+            view = View._make((*here, *ahead, seen, lights, outlook.signs(now[station]), task))
             steer, throttle, brake = guard.ask(view)
             if script is not None:
-                monitor.heed(guard.handed_to, script.has_end, step * CONTROL, CONTROL)
+                monitor.heed(
+                    SCRIPT if script.is_changing else guard.handed_to, script.has_end, step * CONTROL, CONTROL
+                )
                 monitor.is_over = script.is_over
                 if script.road is not road:
                     road = script.road
@@ -141,5 +144,5 @@ class MujocoSimulator:
         drive = Drive(guard.name, "mujoco", seed, columns, ended, self.car.box, handovers, others, has_lights)
         if script is None:
             return drive
-        said = {name: getattr(script, name) for name in ("missed", "limited", "moves", "history")}
+        said = {name: getattr(script, name) for name in ("missed", "limited", "moves", "history", "tasks")}
         return replace(drive, **said, unheeded=guard.unheeded)
