@@ -172,6 +172,14 @@ def test_who_is_beside_backs_out_across_the_lane(side: str) -> None:
     assert run.outcome == "PASS"
 
 
+def test_who_backs_out_stops_when_it_is_told() -> None:
+    _, drive = driven("straight 200 && ego v=30; van beside left: reverse for=7", "robot")
+    assert drive.others is not None
+    speed = np.abs(drive.others.states[:, 0, 4])
+    moves = np.flatnonzero(speed > 0.3) * 0.1
+    assert moves[-1] - moves[0] == pytest.approx(7.0, abs=0.8)
+
+
 def _offset(run: Run, x: float, y: float) -> float:
     assert run.road is not None
     s = np.linspace(0.0, run.road.length, 2000)

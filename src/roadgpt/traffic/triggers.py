@@ -188,4 +188,6 @@ class Triggers:
             case _:  # merge, turn_in, turn_across, cross, run_light, run_sign, reverse out of a driveway
                 goal = speed.cruise if to is None else to
                 start = starting(speed.kind, goal) if self.waits else CHANGE
+                if course.backs and lasts is not None:
+                    return [Phase(goal, start, lasts=lasts), Phase(0.0, STOP, until="speed")]
                 return [Phase(goal, start if accel is None else pull, until="met")]
