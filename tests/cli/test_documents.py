@@ -52,7 +52,7 @@ def test_the_workflow_for_continuous_integration_works_as_printed() -> None:
     (workflow,), (prepared,) = blocks(page, "yaml"), blocks(page, "sh")
     steps = pytest.importorskip("yaml").safe_load(workflow)["jobs"]["drive"]["steps"]
     drive, campaign = [step["run"] for step in steps if step.get("run", "").startswith("roadgpt")]
-    (code,) = blocks("docs/how-to/own-driver.md", "python")
+    code, *_ = blocks("docs/how-to/own-driver.md", "python")
 
     def typed(line: str) -> Result:
         provenance.CODE.forget()

@@ -124,7 +124,7 @@ def test_the_driver_sees_who_is_within_200_m_and_the_file_holds_everybody(
                 expected.append((far, (actor.kind, *state[[0, 1, 3, 4]].tolist(), *actor.size[:2])))
         assert [other[0] for other in view.others] == [other[0] for _, other in sorted(expected)]
         for seen, (_, there) in zip(view.others, sorted(expected), strict=True):
-            assert seen[1:] == pytest.approx(there[1:], abs=1e-6)
+            assert seen[1:7] == pytest.approx(there[1:], abs=1e-6)
     assert {"truck", "barrier", "adult"} == {other.kind for other in driver.views[0].others}
     assert drive.others is not None
     count = len(drive.others)
