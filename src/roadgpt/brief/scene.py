@@ -422,8 +422,8 @@ class Scene(Frozen):
     def _check_actions(self) -> None:
         """Raises ValueError if the tested car cannot do what it is told, one thing after another."""
         if self.parks and (self.offset or not self.actions or span(self.speed or exactly(0)).hi > 0):
-            why = "has an end: write wait 30, or pull_out" if not self.actions else "has no t= and no speed"
-            raise ValueError(f"the tested car is parked, which {why}")
+            asks = "leave its t= and its speed out" if self.actions else "say how long: wait 30, or pull_out"
+            raise ValueError(f"the tested car is parked; {asks}")
         first = next((each.what for each in self.actions if each.what != "wait"), "pull_out")
         if self.parks and first not in ("pull_out", "release"):
             raise ValueError(f"the tested car is parked; it waits, and pulls out before it can {first}")
