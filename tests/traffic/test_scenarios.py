@@ -2,9 +2,7 @@
 roads.json: names, parameters and grids, what an outside judge sees in the exported files, and on which roads
 they can happen."""
 
-import importlib
 import json
-import sys
 import tempfile
 from pathlib import Path
 from types import ModuleType
@@ -15,7 +13,7 @@ import pytest
 from shapely import LineString, Point, Polygon
 
 from boxed import corners
-from outside_judge import SHARED
+from outside_judge import traffic_referee
 from prescribed import OF_NCAP, OURS
 from roadgpt.brief.beside import friction_of
 from roadgpt.brief.model import Brief, mirrored, mirrored_scene
@@ -53,13 +51,7 @@ SAMPLE = (
 
 @pytest.fixture(scope="module")
 def referee() -> ModuleType:
-    if not (SHARED / "referee_traffic.py").exists():
-        pytest.skip("the referee of traffic is not at hand")
-    sys.path.insert(0, str(SHARED))
-    try:
-        return importlib.import_module("referee_traffic")
-    finally:
-        sys.path.remove(str(SHARED))
+    return traffic_referee()
 
 
 def made(name: str, drives: bool, left_hand: bool = False) -> Run:

@@ -220,7 +220,7 @@ CONDITIONS: Mapping[str, tuple[str, str]] = {
     for word in words
 }
 MARK = re.compile(
-    r"\b(?:(?:after|before|in) (?:turn|junction) (?:-1|[1-9]\d?)|(?:after|with) "
+    r"\b(?:(?:after|before|in) (?:turn|junction|crosswalk) (?:-1|[1-9]\d?)|(?:after|with) "
     rf"(?:{TESTED_CAR}|(?:{'|'.join(ROAD_USERS)}) [1-9]\d?) (?:{'|'.join(MANEUVERS)}))(?!\S)"
 )
 """A part of the route, or what another actor does, as in "after turn 1" and "with truck 1 brake"."""
@@ -456,7 +456,8 @@ def _read_words(
             _set(fields, "count", read_amount(word[1:]))
         elif language.of:
             known = ", ".join(sorted((*language.words, *(f"{key}=" for key in language.keys))))
-            raise BriefError(f"a plan has no word '{word[:40]}' for a {language.of}; there are {known}")
+            one = f"{'an' if language.of == TESTED_CAR else 'a'} {language.of}"
+            raise BriefError(f"a plan has no word '{word[:40]}' for {one}; there are {known}")
         else:
             raise BriefError(
                 f"a plan has no word '{word[:40]}' here; what is asked of the whole road stands behind |, "

@@ -82,9 +82,9 @@ class Mark(Frozen):
     brake" or "after ego stop", or its begin, as in "with truck 1 brake"."""
 
     word: Literal["after", "before", "in", "with"]
-    of: Literal["turn", "junction", "ego"] | ActorKind
+    of: Literal["turn", "junction", "crosswalk", "ego"] | ActorKind
     number: int
-    """Turns, junctions and actors of each kind are counted apart, from 1; -1 is the last turn or junction."""
+    """Counted apart, from 1; -1 is the last turn, junction or crosswalk."""
     what: What | None = None
 
     def __str__(self) -> str:
@@ -195,7 +195,8 @@ class Role(Frozen):
             raise ValueError(
                 f"'{self.at}' is no place where {one} can be at first; write for example after turn 1"
             )
-        if (self.kind not in MOVING or self.where == "parked") and (self.speed or self.faster):
+        is_still = self.kind not in MOVING or self.where == "parked"
+        if is_still and (self.speed or self.faster) not in (None, exactly(0)):
             raise ValueError(f"{one} {'parked ' * (self.kind in MOVING)}stands; leave its speed out")
         for action in self.actions:
             if self.kind not in MANEUVERS[action.what].who:
@@ -512,9 +513,15 @@ class Scene(Frozen):
         return bool(self.parks) or (self.speed is not None and span(self.speed).hi == 0)
 
     @property
+    def lights(self) -> Signal | None:
+        """What the first traffic lights show: as told, or red where the tested car is to run a red light."""
+        runs = any(each.what == "run_light" for each in self.actions)
+        return self.signal or (Signal(shows="red") if runs else None)
+
+    @property
     def has_others(self) -> bool:
         """Whether somebody or something else is on the road, or lights run there."""
-        return self.has_flow or bool(self.actors or self.parked or self.signal)
+        return self.has_flow or bool(self.actors or self.parked or self.lights)
 
     @property
     def lanes_beside(self) -> dict[str, int]:

@@ -13,8 +13,8 @@ from roadgpt.brief.model import OF_THE_WORDS, Brief, at_least, exactly
 from roadgpt.brief.outline import outline
 from roadgpt.brief.scene import LEAVES, Action, Role, Scene
 from roadgpt.errors import BriefError
-from roadgpt.language.names import JunctionKind, Take, Way, Where
-from roadgpt.language.table import FLOWS
+from roadgpt.language.names import Control, JunctionKind, Take, Way, Where
+from roadgpt.language.table import FLOWS, MANEUVERS
 
 AROUND = ("back", "right", "straight", "left")
 """The arms of a crossroads, from that of the tested car on against the clock."""
@@ -139,19 +139,23 @@ def with_places(brief: Brief, scene: Scene) -> Brief:
     if turns < most <= span(first.turns).hi and first.has_free_shape:
         first = first.model_copy(update={"turns": at_least(most)})
         brief = brief.model_copy(update={"stretches": (first, *rest)}) if rest else first
-    crossed = any(role.where == "crosswalk" for role in scene.actors)
     junctions = list(brief.junctions)
     plain = [n for n, place in enumerate(junctions) if place.kind not in (*LANE_KINDS, *RAMPS)]
-    if plain and crossed and not any(place.crosswalk or place.kind == "crosswalk" for place in junctions):
+    if (
+        plain
+        and _needs_crosswalk(scene)
+        and not any(place.crosswalk or place.kind == "crosswalk" for place in junctions)
+    ):
         junctions[plain[0]] = junctions[plain[0]].model_copy(update={"crosswalk": True})
-    if scene.signal and plain and not any(place.control == "lights" for place in junctions):
-        first_open = next((n for n in plain if junctions[n].control is None), None)
-        if first_open is None:
-            raise BriefError(
-                f"{scene.signal}, and no junction of the road has lights; write lights there instead of "
-                f"{junctions[plain[0]].control}"
-            )
-        junctions[first_open] = junctions[first_open].model_copy(update={"control": "lights"})
+    for (control, *fits), why in _controls(scene) if plain else ():
+        if not {junctions[n].control for n in plain} & {control, *fits}:
+            first_open = next((n for n in plain if junctions[n].control is None), None)
+            if first_open is None:
+                raise BriefError(
+                    f"{why}, and no junction of the road has {control}; write {control} there instead of "
+                    f"{junctions[plain[0]].control}"
+                )
+            junctions[first_open] = junctions[first_open].model_copy(update={"control": control})
     numbered = [n for n, place in enumerate(junctions) if place.kind not in LANE_KINDS]
     come: dict[int, list[Role]] = {}
     for role in filter(comes_to_junction, scene.actors if plain else ()):
@@ -180,13 +184,25 @@ def _lacking(brief: Brief, scene: Scene) -> Iterator[JunctionClause]:
         yield JunctionClause(kind="t_junction", take="straight", ways=(side, "straight"), control="priority")
         has_junction = True
     is_met = any(map(comes_to_junction, scene.actors))
-    if (is_met or scene.turn or scene.signal) and not has_junction:
+    if (is_met or scene.turn or [*_controls(scene)]) and not has_junction:
         yield JunctionClause(kind="crossroads", take=scene.turn or (None if is_met else "straight"))
         kinds.append("crossroads")
-    elif "crosswalk" in wheres and not has_junction and "crosswalk" not in kinds:
+    elif _needs_crosswalk(scene) and not has_junction and "crosswalk" not in kinds:
         yield JunctionClause(kind="crosswalk")
     if _most(scene, "junction") and not any(kind not in LANE_KINDS for kind in kinds):
         yield JunctionClause(kind="crossroads", take="straight")
+
+
+def _needs_crosswalk(scene: Scene) -> bool:
+    return any(role.where == "crosswalk" for role in scene.actors) or _most(scene, "crosswalk") > 0
+
+
+def _controls(scene: Scene) -> Iterator[tuple[tuple[Control, ...], object]]:
+    """Yields the signs or lights of which the first junctions need one, and why."""
+    if scene.lights:
+        yield ("lights",), scene.lights
+    if any(each.what == "run_sign" for each in scene.actions):
+        yield ("yield", "stop"), f"the tested car {MANEUVERS['run_sign'].said}"
 
 
 def _most(scene: Scene, of: str) -> int:

@@ -44,7 +44,7 @@ def begin(
     Raises:
         UsageError: the file cannot be used, or an actor of the scene cannot be, or act, on this road."""
     scene, movers, lights = world.scene, list[Mover](), None
-    if scene.has_flow or scene.actors or scene.signal:
+    if scene.has_flow or scene.actors or scene.lights:
         from roadgpt.traffic.lights import lights_of
 
         lights = lights_of(road, world, seed)
@@ -67,4 +67,4 @@ def begin(
         from roadgpt.traffic.idm import IdmMover
 
         movers.append(IdmMover(stage))
-    return Traffic(movers, lights) if movers or scene.signal else None
+    return Traffic(movers, lights) if movers or scene.lights else None

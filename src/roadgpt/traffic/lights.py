@@ -112,7 +112,7 @@ def lights_of(road: "Road", world: "World", seed: int) -> Lights:
     comes at its first speed, and so has who drives along with it or towards it. If somebody comes from the
     side and nobody runs a red light, that one has green, and the tested car red. What the first lights on its
     way show may be told."""
-    actors, signal = world.scene.actors, world.scene.signal
+    actors, signal = world.scene.actors, world.scene.lights
     lights = Lights(network_of(road, world), seed, actors)
     crosses = any(map(comes_from_side, actors)) and not any(map(_runs, actors))
     speed = world.first_speed or world.limits.speed_limit  # who stands at first goes on up to the limit

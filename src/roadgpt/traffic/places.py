@@ -98,6 +98,8 @@ def _lanes_beside(s: float, road: "Road", world: "World", width: float) -> dict[
 def stretch_of(mark: Mark, road: "Road", path: Line) -> tuple[float, float]:
     """Returns the first and the last station, along the tested car's lane, of a part of its route."""
     spans = passages = [(each.start, each.end) for each in road.passages]
+    if mark.of == "crosswalk":
+        spans = [(each.s - CROSSWALK[1] / 2, each.s + CROSSWALK[1] / 2) for each in road.crosswalks]
     if mark.of == "turn":
         edges = [0.0, *(edge for span in passages for edge in span), road.length]
         free = [(a, b) for a, b in list(pairwise(edges))[::2] if b - a > 10.0]

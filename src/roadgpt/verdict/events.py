@@ -63,7 +63,7 @@ def _out_of_lane(case: Judged) -> Iterator[Event]:
 
 def _lights(case: Judged) -> Iterator[Event]:
     """Yields what is told of the first lights on the way."""
-    signal, drive = case.world.scene.signal, case.drive
+    signal, drive = case.world.scene.lights, case.drive
     lit = next((each for each in case.road.passages if each.light_line is not None), None)
     if signal is None or lit is None or lit.light_line is None:
         return
