@@ -63,6 +63,9 @@ def test_a_driver_does_what_it_follows_itself_or_fails(does, what):
     assert verdict.outcome == "PASS", verdict.description
     assert not made.handovers
     assert {each.what for each in driver.seen if each} == {what}
+    (event,) = verdict.events
+    assert event.who == "tested car"
+    assert 3.0 < event.time < event.until
     assert {each.has_begun for each in driver.seen if each} == {False, True}
     speed, t = made["speed"] * 3.6, made["t"]
     if what == "speed":

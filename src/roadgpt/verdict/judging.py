@@ -152,7 +152,7 @@ def judge(
 
 
 def _events(case: Judged, incidents: Sequence[Incident]) -> tuple[Event, ...] | None:
-    if case.drive.others is None and not case.drive.handovers:
+    if case.drive.others is None and not (case.drive.handovers or case.drive.history):
         return None
     from roadgpt.verdict.events import events_of
 
