@@ -128,7 +128,7 @@ WEATHERS = st.tuples(
 SCENES = drawn(
     Scene,
     speed=maybe(amounts(0, 250)),
-    person=st.none() | st.just("robot"),
+    person=st.sampled_from([None, "robot", "test_robot"]),
     lane=st.sampled_from([None, 1, 2, -1, -4]),
     landscape=st.lists(LANDS, max_size=2).map(tuple),
     actors=casts(),

@@ -45,7 +45,7 @@ from roadgpt.language.table import (
 )
 
 Clock = Annotated[str, StringConstraints(pattern=r"^([01][0-9]|2[0-3]):[0-5][0-9]$")]
-Person = Literal["robot"]
+Person = Literal["robot", "test_robot"]
 Lie = Literal["along", "across", "through"]
 LAND_KINDS: tuple[LandKind, ...] = get_args(LandKind)
 LEAVES = ("cut_out", "change_lane")
@@ -364,7 +364,8 @@ class Scene(Frozen):
     turn: Literal["left", "right", "straight"] | None = None
     """The way that the tested car takes at the first junction; None: that of the route."""
     person: Person | None = None
-    """Who is at the wheel where a driver hands over, as in the catalogue; None: whom the driver chooses."""
+    """Who is at the wheel where a driver hands over; None: whom the driver chooses. In a test of the
+    ``test_robot``, as in the catalogue, it drives until the event begins, and the drive ends behind that."""
     signal: Signal | None = None
     actions: tuple[Action, ...] = ()
     """What the tested car is made to do (``roadgpt.drive.script_hand``). Its gaps are those to who is
@@ -490,8 +491,13 @@ class Scene(Frozen):
 
     @property
     def has_script(self) -> bool:
-        """Whether it tells the tested car what to do, or where to keep to."""
-        return bool(self.actions) or self.offset is not None
+        """Whether it tells the tested car what to do, where to keep to, or when its test begins."""
+        return bool(self.actions) or self.offset is not None or self.is_test
+
+    @property
+    def is_test(self) -> bool:
+        """Whether the test robot drives until the event begins, and the drive ends when that is over."""
+        return self.person == "test_robot"
 
     @property
     def room_behind(self) -> float:
@@ -693,7 +699,7 @@ def parts_said(scene: Scene) -> Iterator[str]:
     if scene.actions:
         yield f"the tested car {', then '.join(map(str, scene.actions))}"
     phrases = {str(name): said for name, said in LIGHTS.items()}
-    phrases |= {name: row.said for name, row in SURFACES.items()}
+    phrases |= {name: row.said for name, row in SURFACES.items()} | SCENES["persons"]
     for name, said in SCENES["said"].items():
         value = getattr(scene, name)
         if name in ("flow", "oncoming") and value:

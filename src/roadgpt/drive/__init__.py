@@ -195,6 +195,7 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None, r
 
     if world.scene.has_script and not getattr(simulator, "heeds_scripts", False):
         does = (*world.scene.actions, f"starts {world.scene.offset} m aside")[0]
+        does = "a robot's run-in" if world.scene.is_test else does
         raise UsageError(
             f"this simulator cannot make the tested car do what its scene tells ({does}); drive in the "
             "simulator mujoco"

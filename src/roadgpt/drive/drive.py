@@ -69,8 +69,8 @@ SHARE = 1 / 3  # ... the car must have moved at least this share of that distanc
 FAILED = ", so the simulation failed, which says nothing about the driver; drive the road again"
 
 
-SCRIPT, PEDALS = "the script", "the script's pedals"
-"""Who drives instead of the driver where a scene has the wheel, or the pedals alone."""
+SCRIPT, PEDALS, RUN_IN = "the script", "the script's pedals", "the run-in's robot"
+"""Who drives instead of the driver where a scene has the wheel, or the pedals alone, and before its event."""
 RETURNS = 2.0  # s from when the script lets the wheel go, after which the lane counts again
 
 

@@ -1,33 +1,20 @@
-r"""The hand of a scene's script at the tested car: it does what the scene tells the car to do.
+"""The hand of a scene's script at the tested car: it does what the scene tells the car to do.
 
-Pedals and wheel are two hands. The driver is asked at every step, also while it has neither.
-
-             an action begins: the script takes what the action needs
-        +-----------------------------------------------------------------+
-        |                                                                 v
-    +--------+   it has ended, or "release" begins: both go back    +------------+
-    | driver | <--------------------------------------------------- |   script   |
-    +--------+                                                      +------------+
-        | the driver brakes with more than 3.5 m/s2 for 0.2 s           | so does the driver, and the
-        v when an action is to begin                                    v script steers
-    this one is given up                          it steers to the middle of the lane, and gives this one up
-
-Pedals: the stronger brake counts, the script's or the driver's, and throttle is the script's while the driver
-does not brake harder. Wheel: the script's. The lane does not count while the script steers, nor in the
-RETURNS seconds behind that. Where the car changes lanes, overtakes or passes somebody, the lane that it is to
-keep to moves: the driver is started again for a road whose driven lane is the new one, so that it drives with
-the pedals as its new way needs, and goes on there."""
+Pedals and wheel are two hands; docs/explanation/who-has-the-wheel.md has the states, and who has which. The
+driver is asked at every step, also while it has neither. Where the car changes lanes, overtakes or passes
+somebody, the lane that it is to keep to moves: the driver is started again for a road whose driven lane is
+the new one. In a test, the robot drives until the event begins, and the drive ends AFTER it is past."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from roadgpt.brief.scene import AROUND, CAR, Event, Mark
-from roadgpt.drive.drive import PEDALS, RETURNS, SCRIPT, Box, GivenTask, LaneMove
+from roadgpt.drive.drive import PEDALS, RETURNS, RUN_IN, SCRIPT, Box, GivenTask, LaneMove
 from roadgpt.drive.drivers.reference import Reference
+from roadgpt.drive.drivers.robot import Robot
 from roadgpt.drive.driving_line import BEFORE_LINE, pedals_for
 from roadgpt.drive.keeping_distance import HALTED, LEAST_BRAKE, ROLLS
 from roadgpt.drive.shunt import Shunt
@@ -43,7 +30,7 @@ from roadgpt.traffic.lateral import Lateral, Offsets
 from roadgpt.traffic.longitudinal import Longitudinal
 from roadgpt.traffic.maneuver import CHANGE, FAST, LATERAL, STOP, Maneuver, Phase, drawn
 from roadgpt.traffic.places import SIGN, offset_of, stretch_of
-from roadgpt.traffic.traffic import ENDED, NEVER, Stage
+from roadgpt.traffic.traffic import ENDED, NEVER, T0, Stage
 from roadgpt.traffic.triggers import Triggers
 
 if TYPE_CHECKING:
@@ -82,6 +69,8 @@ EMERGENCY, CLOSE, SOON, SIDEWAYS = 0.6, 8.0, 3.0, 15.0
 EARLY_ERROR = 3.0  # s before a line that it runs over, or a corner that it cuts
 LANE = 3.5  # m, usual width
 CORNER = math.radians(25.0)  # less is no turn at a junction
+AFTER = 4.0  # s that a test goes on when its event is over: as long as it began before (T0)
+LEAVES = 0.1  # m/s, with which it moves farther out of its lane: lane support begins from 0.2 on
 
 
 class ScriptHand:
@@ -94,10 +83,11 @@ class ScriptHand:
         box: Box,
         seed: int,
         traffic: "Traffic | None",
-        follows: Sequence[str] = (),
+        driver: object = None,
     ) -> None:
-        """Draws the numbers. What the driver ``follows`` it does itself. Raises SceneError if the road has no
+        """Draws the numbers. What the ``driver`` follows it does itself. Raises SceneError if the road has no
         place that an action names, DriverError if there is no such task."""
+        follows = getattr(driver, "follows", ())
         if wrong := sorted({*follows} - {*TASKS}):
             raise DriverError(
                 f"a driver cannot follow {', '.join(wrong)}; name some of {', '.join(TASKS)} in its follows"
@@ -139,6 +129,27 @@ class ScriptHand:
         """The events of maneuvers that have begun, or never will."""
         self._around = ""
         """Who is overtaken or passed."""
+        event = "past" if traffic is None else traffic.event
+        self._has_event = world.scene.is_test and (bool(self._maneuvers) or event != "past")
+        is_robot = getattr(driver, "name", "") == Robot.name
+        self._robot, self._runs_in = Robot(), self._has_event and not self._stands and not is_robot
+        if self._runs_in:
+            self._robot.start(self.road, world, seed)
+        self._is_due, self._calm, self._away = False, 0.0, 0.0
+        """Whether the event has begun, for how many seconds it has been over, and how far the car was from
+        the middle of its lane."""
+
+    def _watch(self, view: View) -> None:
+        """Notes whether the event of a test has begun, and for how long it has been over."""
+        event = "past" if self._traffic is None else self._traffic.event
+        near = self._front + T0 * self._speed.v
+        enters = any(self._line.from_road(way.line) < near for way in self.road.passages[:1])
+        self._is_due = self._is_due or enters or bool(self._begun) or event == "now"
+        before, self._away = self._away, abs(self._aside(view))
+        is_held = self._speed.v < HALTED and self._phases[:1] and self._phases[0].until == "speed"
+        is_done = self._begun == len(self._maneuvers) and (is_held or not self._phases)
+        is_over = is_done and self._is_due and event == "past" and self._away - before < LEAVES * view.dt
+        self._calm = self._calm + view.dt if is_over else 0.0
 
     def _aside_at_first(self, road: "Road", rng: np.random.Generator) -> float:
         """Returns how far to the left of its lane it is at first."""
@@ -241,6 +252,10 @@ class ScriptHand:
         self._see(view)
         self._go_on(view)
         self._begin_in_time(view)
+        if self._has_event:
+            self._watch(view)
+        if self._runs_in and not self._is_due:
+            return self._robot.steer(view), RUN_IN
         if self._is_task:
             return command, None
         if not self._phases and not (self._stands and not self._begun):
@@ -282,8 +297,10 @@ class ScriptHand:
 
     @property
     def is_over(self) -> bool:
-        """Whether the drive ends, because it has done everything and the car stays where it is parked, or has
-        turned round."""
+        """Whether the drive ends, because its event is over, or it has done everything and the car stays
+        where it is parked, or has turned round."""
+        if self._calm > AFTER:
+            return True
         if self._begun == len(self._maneuvers) and not self._phases and self._shunt is not None:
             return self._maneuvers[-1].what == "u_turn"
         return self._is_left_parked and all(each.what != "release" for each in self._maneuvers)

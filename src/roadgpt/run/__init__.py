@@ -68,6 +68,7 @@ MOST_ROUNDS = 3  # drafts of one road; a designer whose last draft still breaks 
 REFUSED = "refused: "  # what the description of a test begins with whose scene cannot be on its road
 WENT_ON = {
     "goal": "then came to the goal",
+    "over": "then drove on to the end of the event",
     "fell": "then fell",
     "rolled": "then rolled over beside the road",
     "crashed": "then crashed beside the road",

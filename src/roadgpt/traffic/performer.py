@@ -70,6 +70,12 @@ class Performer:
             self.course.apart(met) < -met.length if self.course.meeting else has_done
         )
 
+    @property
+    def has_done(self) -> bool:
+        """Whether it has done all that it does, or goes on with the last of that without end."""
+        is_last = not self.phases or self.phases[0].lasts == math.inf
+        return self.is_there and self.begun == len(self.maneuvers) and is_last
+
     def state(self) -> tuple[float, ...] | None:
         """Returns its state; None while it is not there: its box is not yet, or no longer, on its way."""
         v, slope, course = self.longitudinal.v, self.lateral.slope, self.course

@@ -18,11 +18,12 @@ from roadgpt.traffic.following import ALONG
 from roadgpt.traffic.performer import Performer
 from roadgpt.traffic.places import parked_rows
 from roadgpt.traffic.placing import BEHIND, INTO, ONCOMING, STANDS, Placing
-from roadgpt.traffic.traffic import ENDED, LATE, NEVER, Stage
+from roadgpt.traffic.traffic import ENDED, LATE, NEVER, T0, Stage, Stretch
 
 UNCOVERED = 3.0  # s that who changes lanes has left before who stands behind it is reached
 IN_SIGHT = 150.0  # m ahead, in which somebody sees others in its lane
 BESIDE = 0.2  # m between two who pass each other, at least
+LATER = 20.0  # s to a collision, from which on there is no conflict yet: cruise control that follows wavers
 
 
 class Script:
@@ -33,7 +34,8 @@ class Script:
         Raises SceneError if something of the scene cannot be on this road."""
         self._stage, self._way = stage, driven_line(stage.road, stage.world)
         first = self._way.from_road(stage.world.start_on(stage.road))
-        self._performers = self._placed(Met(first, stage.world.first_speed, *SIZES["car"][:2]))
+        met = Met(first, stage.world.first_speed, *SIZES["car"][:2])
+        self._performers = self._placed(met)
         free = [each.course.way.points for each in self._performers if each.course.way is not self._way]
         there = [(np.array(at), each.size) for each in self._performers if (at := each.state())]
         free += [corners(state[:2], state[HEADING], np.array(size)) for state, size in there]
@@ -47,6 +49,7 @@ class Script:
         self._sizes = np.array([actor.size[:2] for actor in self.actors]).reshape(-1, 2)
         self.happened: dict[str, float] = {}
         """What of the scene has begun, in words, and at which station of its road the tested car was then."""
+        self._time, self._meets_in = 0.0, self._to_meeting(met)
 
     def _placed(self, met: Met) -> list[Performer]:
         """Returns everybody where they are at first, as seen from the tested car."""
@@ -143,6 +146,8 @@ class Script:
         """Returns the states of all actors STEP after ``time``. They slow down for others ahead in their
         lane, but not for the tested car, unless they overtake it. Who hits it from behind stops there."""
         seen = self._seen(car)
+        if self._stage.world.scene.is_test:
+            self._time, self._meets_in = time, self._to_meeting(seen)
         self._look(bodies, car)
         past = self._states() if self._stage.aims else np.empty((0, 5))
         for each in self._performers:
@@ -197,6 +202,25 @@ class Script:
             if is_ahead.any():
                 first = int(np.where(is_ahead, gap, np.inf).argmin())
                 each.longitudinal.ahead = float(gap[first]), float(ahead * speed[first])
+
+    def _to_meeting(self, met: Met) -> float:
+        """Returns in how many seconds the tested car, as fast as everybody is now, comes to the first one in
+        its path, or who comes there from a side, or one behind it comes to it; infinity if none does."""
+        boxes = self._way.boxes(self._states(), self._sizes)
+        ahead, away, (half, wide) = boxes.along - met.s, boxes.t - met.t, boxes.reach
+        comes = (ahead > 0) & (np.sign(away) * boxes.velocity[:, 1] < -STILL)
+        closing = np.sign(ahead) * (met.v - boxes.velocity[:, 0])
+        closing = np.where(np.abs(away) < wide + met.width / 2, closing, np.where(comes, met.v, 0.0))
+        gap = np.maximum(np.abs(ahead) - half - met.length / 2, 0.0)[closing > 0]
+        return float((gap / closing[closing > 0]).min(initial=math.inf))
+
+    @property
+    def event(self) -> Stretch:
+        """See ``Traffic.event``."""
+        if self._meets_in > LATER and all(each.has_done for each in self._performers):
+            return "past"
+        acts = any(0 < time <= self._time for each in self._performers for time, _ in each.since.values())
+        return "now" if acts or self._meets_in <= T0 else "before"
 
     def _states(self) -> FloatArray:
         nowhere = (np.nan,) * 5

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
 
 import numpy as np
 
@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from roadgpt.road import Road, World
     from roadgpt.traffic.lights import Lights
 
+T0 = 4.0  # s to a collision, at which Euro NCAP's tests begin
+Stretch = Literal["before", "now", "past"]
 NEVER, LATE, ENDED = "it never happened that", "the tested car had passed before", "the drive ended before"
 
 
@@ -136,6 +138,12 @@ class Traffic:
         """Tells the actors of a scene when something that the tested car does began or ended."""
         for mover, _ in self._movers:
             getattr(mover, "events", {})[event] = time
+
+    @property
+    def event(self) -> Stretch:
+        """Before, in or past the event: it begins when somebody acts, or the tested car meets one in T0 s,
+        and is past when all have done everything and are in no conflict with it. Past without actors."""
+        return next((mover.event for mover, _ in self._movers if hasattr(mover, "event")), "past")
 
     @property
     def events(self) -> dict[tuple[str, ...], float]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from roadgpt.drive.drive import PEDALS, RETURNS, SCRIPT
+from roadgpt.drive.drive import PEDALS, RETURNS, RUN_IN, SCRIPT
 from roadgpt.errors import UsageError
 from roadgpt.geometry import wrap_angle
 from roadgpt.geometry.curve import Array
@@ -332,7 +332,7 @@ def is_ordered(drive: "Drive", incident: Incident) -> bool:
     pedals as well. Of what others do to the car, nothing is."""
     if incident.kind in MEETING:
         return False
-    hands = {SCRIPT: RETURNS} if incident.kind in STEERED else {SCRIPT: RETURNS, PEDALS: 0.0}
+    hands = {SCRIPT: RETURNS} if incident.kind in STEERED else {SCRIPT: RETURNS, PEDALS: 0.0, RUN_IN: 0.0}
     return any(
         each.start < incident.at_time <= each.end + hands[each.by]
         for each in drive.handovers

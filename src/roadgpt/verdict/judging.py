@@ -1,13 +1,13 @@
 """Turns a Drive into a Verdict."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from roadgpt.brief.scene import STRUCK, Event
-from roadgpt.drive.drive import PEDALS, SCRIPT
+from roadgpt.drive.drive import PEDALS, RUN_IN, SCRIPT
 from roadgpt.drive.drive_monitor import STUCK_AMONG_OTHERS, STUCK_TIME
 from roadgpt.language.names import Face
 from roadgpt.language.table import VEHICLES
@@ -78,9 +78,10 @@ def judge(
     done = incidents_of(case)
     incidents = tuple(each for each in done if not is_ordered(drive, each))
     step, failed = first_failure(case, incidents, known if drive.others is None else None)
-    behind = _behind(case) if failed and failed.name in ("stuck", "timeout") else ""
+    waits = failed.name in ("stuck", "timeout") if failed else drive.ended == "over"
     by_script = drive.handed_to(step) in (SCRIPT, PEDALS) and bool(drive.missed)
-    failed = None if behind or (by_script and failed and failed.name in ("stuck", "timeout")) else failed
+    behind = _behind(case) if waits else ""
+    failed = None if behind or (by_script and waits) else failed
     cause = cast("Cause | None", failed and failed.name)
     hit = next((each for each in incidents if each.contact is not None), None)
     handed_to = drive.handed_to(step) if failed else None
@@ -110,7 +111,7 @@ def judge(
     untold = [each for each in incidents if each is not contact or cause == "collision"]
     crashed = (each for each in drive.history if each.what.startswith("hits ") and each.time is not None)
     description += "".join(f"; {each.who} {each.what} at {each.time:.1f} s" for each in crashed)
-    description += _on_face(world, hit) + _counted(untold, cause) + _who_drove(drive.shares, excuse)
+    description += _on_face(world, hit) + _counted(untold, cause) + _who_drove(drive, excuse)
     description += "".join(f"; {each}" for each in [*filter(None, [found and found.said]), *drive.limited])
     if failed is None and drive.missed:
         from roadgpt.verdict.happened import told
@@ -234,13 +235,14 @@ def _asks_for_emergency_braking(drive: "Drive", contact: Incident) -> bool:
     return (10 if kind in VEHICLES else 20) <= round(3.6 * float(drive["speed"][before].max())) <= 60
 
 
-def _who_drove(shares: Mapping[str, float], excuse: str) -> str:
-    if not shares:
+def _who_drove(drive: "Drive", excuse: str) -> str:
+    if not drive.shares:
         return ""
-    (own, share), *others = shares.items()
-    told = " and ".join(f"{name} for {percent(part)}" for name, part in others)
-    excuse = f"; {excuse}" * bool(excuse)
-    return f"; {own} drove {percent(share)} of the way and handed over to {told}{excuse}"
+    (own, share), *others = drive.shares.items()
+    run_in = [f"{RUN_IN} drove until {each.end:.1f} s" for each in drive.handovers if each.by == RUN_IN]
+    told = " and ".join(f"{name} for {percent(part)}" for name, part in others if name != RUN_IN)
+    took = [f"{own} drove {percent(share)} of the way and handed over to {told}"] if told else []
+    return "".join(f"; {each}" for each in (*run_in, *took, *filter(None, [excuse])))
 
 
 def far_beyond(beyond: float) -> str:
@@ -266,12 +268,13 @@ def _behind(case: Judged) -> str:
 
 def _kept(drive: "Drive", world: "World", margin: float, beyond: float, behind: str) -> str:
     """Describes a PASS, and how far outside its lane the car was, which the tolerance allows to a limit."""
-    reached = f"to the goal after {drive['s'][-1]:.0f} m"
-    if drive.ended == "over":
+    if drive.ended == "over" and not world.scene.is_test:
         did = "was parked to the end of the scene" if world.scene.parks else "turned round as told"
         return f"{did}, after {drive.duration:.0f} s"
-    if behind:
-        reached = f"for {drive['s'][-1]:.0f} m and stayed {behind}"
+    reached = f"for {drive['s'][-1]:.0f} m" if behind else f"to the goal after {drive['s'][-1]:.0f} m"
+    if drive.ended == "over":
+        reached = f"for {drive['s'][-1]:.0f} m, to the end of the event after {drive.duration:.1f} s"
+    reached += f" and stayed {behind}" * bool(behind)
     if not drive.max_outside:
         return f"kept its lane {reached}, never less than {margin:.2f} m sideways from failing"
     kept = f"kept its lane within the tolerance of {percent(world.limits.oob_tolerance)}"

@@ -108,7 +108,7 @@ class LaneCentring:
         """Computes the middle of the lane, and forgets the last road."""
         self._by_person = [(way.start - TAKEN_OVER, way.end + GIVEN_BACK) for way in road.passages]
         square = world.first_speed**2
-        self._is_robot = world.scene.person == "robot" and all(
+        self._is_robot = bool(world.scene.person and not world.scene.parks) and all(
             square * np.abs(road.curvature(np.arange(way.start, way.end))).max() < HELD
             for way in road.passages
         )

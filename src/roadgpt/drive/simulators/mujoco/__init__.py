@@ -81,7 +81,7 @@ class MujocoSimulator:
         if world.scene.has_script:
             from roadgpt.drive.script_hand import ScriptHand  # only drives with one load it
 
-            script = ScriptHand(road, world, self.car.box, seed, traffic, getattr(driver, "follows", ()))
+            script = ScriptHand(road, world, self.car.box, seed, traffic, driver)
             road = script.road
         guard, camera = DriverGuard(driver, script=script), camera_of(driver)
         vehicle = Vehicle.on(road, world, self.car)
