@@ -48,7 +48,7 @@ def test_a_run_needs_words_or_a_scenario_and_repeats_with_both() -> None:
     )
     run = read_run(Path("a/runs/0001"))
     assert run.request.setup.scenario == "r157:cut_in slower=30"
-    scene = "ego robot v=60; car lane right gap=67.5 v=30: cut_in 2 accel=0 gap=30"
+    scene = "ego test_robot v=60; car lane right gap=67.5 v=30: cut_in 2 accel=0 gap=30"
     assert run.world.scene == read_scene(scene)
     assert run.world.section.lane_width == 3.5
     again = roadgpt("show", "a/runs/0001").output
