@@ -231,6 +231,19 @@ def test_who_is_in_another_lane_stays_there_where_the_route_changes_lanes() -> N
         assert np.abs(np.angle(np.exp(1j * (course - there[1:, 3])))).max() < 0.05, n
 
 
+def test_who_stands_is_in_a_lane_where_the_route_changes_lanes() -> None:
+    """On a straight road with lanes 4 m wide they stand along two lines."""
+    cones = "; ".join(f"cones ahead s={s}" for s in range(110, 260, 10))
+    traffic, _ = rehearsal(f"| lanes=2 len=60 // lane_change left // | len=250 && ego v=30; {cones}")
+    places = traffic.at(0.0)[:, :2]
+    east, north = (places[1] - places[0]) / np.hypot(*(places[1] - places[0]))
+    across = (places - places[0]) @ (-north, east)
+    is_first = across < across.mean()
+    assert np.ptp(across[is_first]) < 0.1
+    assert np.ptp(across[~is_first]) < 0.1
+    assert across[~is_first].mean() - across[is_first].mean() == pytest.approx(4.0, abs=0.1)
+
+
 def test_a_speed_that_a_bend_does_not_give_is_said() -> None:
     traffic, _ = rehearsal("straight 60; turn left 90 r=20; straight 60 && ego v=20; car ahead gap=30 v=90")
     assert "car 1 is slower than 90 km/h where it comes to a bend" in traffic.limited

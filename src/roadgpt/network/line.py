@@ -204,6 +204,14 @@ class Line:
         stretch = max(1.0 - bend * t, LEAST_STRETCH) if 0.0 < s < self.length else 1.0
         return stretch, math.sqrt((along if forward > 0 else against) * stretch)
 
+    def to_lane(self, s: float) -> float:
+        """Returns how far to the left the middle of the nearest lane is, where the line changes lanes."""
+        if self.aside is None:
+            return 0.0
+        here, kept = float(np.interp(s, self.stations, self.aside)), np.abs(np.diff(self.aside)) < 1e-6
+        middles = self.aside[:-1][kept]
+        return float(middles[np.abs(middles - here).argmin()]) - here
+
     def room(self, s: float, v: float, aside: float = 0.0) -> tuple[float, float, float]:
         """Returns what the friction circle leaves at a station in m/s^2 for a change of speed, beside what
         the bend takes at a speed and ``aside``; what it leaves sideways beside the bend; and how much gravity

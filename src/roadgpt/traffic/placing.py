@@ -130,6 +130,8 @@ class Placing:
             self._drift_to_hit(v)
             self.course.s = self._beside()
             self.lateral.t = self.offsets.at_first(self.course.s, self.whats)
+            if v == 0 and where in ("ahead", "behind"):  # in a lane, also where the route changes lanes
+                self.lateral.t += lane.to_lane(self.course.s)
             if self.first == "cut_in" and {"time", "distance", "station"}.isdisjoint(self.cue):
                 self.held = (self.course.s - met.s, v - met.v)
         if not is_along or turns_off:
