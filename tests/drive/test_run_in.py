@@ -94,7 +94,7 @@ def test_it_ends_when_the_car_stands_and_the_leader_drives_away() -> None:
     assert drive.duration < 3.0 + 48 / 3.6 / 4 + AFTER + 1.0  # the leader has braked to 2 km/h
     assert run.outcome == "PASS"
     assert "to the end of the event" in run.description
-    assert f"{RUN_IN} drove until 3.0 s" in run.description
+    assert f"{RUN_IN} drove until 3.0 s (T0)" in run.description
 
 
 @pytest.mark.parametrize("driver", ["reference", "lane_centring"])
@@ -119,6 +119,13 @@ def test_it_ends_when_who_crosses_has_left_the_lane(driver: str) -> None:
     assert (drive.ended, run.outcome) == ("over", "PASS")
     last = drive.others.states[-1, 0]
     assert last[1] * drive.others.states[0, 0, 1] < 0 or abs(last[1]) > LANE_WIDTH  # on the other side
+
+
+def test_somebody_far_away_who_does_nothing_is_an_event_too() -> None:
+    run = driven(STANDS.replace("gap=100", "gap=400"), "reference")
+    assert run.drive is not None
+    assert between(run.drive, handed(run.drive)) / (50 / 3.6) == pytest.approx(4.0, abs=0.11)
+    assert run.drive.ended == "over"
 
 
 def test_who_steers_back_has_ended_and_who_does_not_fails() -> None:

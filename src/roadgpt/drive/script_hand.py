@@ -58,8 +58,6 @@ FOLLOWING = 2.0  # s of headway, with which it still follows whom it overtakes
 EDGE = 0.2  # m, from the edge of the shoulder, or the road, where it pulls over
 ROW = 15.0  # m between those that stand in one row
 PASSED = {"overtake": 10.0, "pass": 2.0}  # m, behind its rear, where it goes back
-
-
 TASKS = ("speed", "brake", "stop", "creep", "change_lane")
 """What a driver may do itself."""
 ERRORS = ("run_light", "run_sign")

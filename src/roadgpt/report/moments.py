@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from roadgpt.drive.drive import RUN_IN
 from roadgpt.geometry.curve import Array
 from roadgpt.report.canvas import (
     BLUE,
@@ -47,7 +48,8 @@ def moments(run: Run) -> Figure | None:
     if not np.isfinite(measured.distance).any():
         return None
     when, who, word = _decisive(run, measured)
-    times = _times(run, when)
+    t0 = [each.end for each in run.drive.handovers if each.by == RUN_IN]
+    times = _times(run, when, t0)
     header = Header.of(run, WIDTH)
     high = header.height + NAMES + VIEW + 3 * (PANEL + GAP) + BOTTOM
     figure = new_figure(WIDTH, high)
@@ -60,7 +62,7 @@ def moments(run: Run) -> Figure | None:
             figure, left, high - header.height - NAMES - VIEW, WIDTH - left - wide, header.height + 0.3
         )
         _view(axes, run, time, who, side * np.array([min(wide / VIEW, 1.0), min(VIEW / wide, 1.0)]))
-        said = {run.drive.duration: "end, ", when: f"{word}, "}.get(time, "")
+        said = {**dict.fromkeys(t0, "T0, "), run.drive.duration: "end, ", when: f"{word}, "}.get(time, "")
         axes.set_title(f"{said}{time:.1f} s", size=9.5, color=INK)
     span = max(times[0] - BEFORE, 0.0), min(when + AFTER, run.drive.duration)
     for number, panel in enumerate((_gaps, _collision, _speeds)):
@@ -102,11 +104,11 @@ def _decisive(run: Run, measured: "Measures") -> tuple[float, int, str]:
     )
 
 
-def _times(run: Run, when: float) -> list[float]:
-    """Returns the times of the views: when the first event began, before the decisive one, then, the end."""
+def _times(run: Run, when: float, t0: list[float]) -> list[float]:
+    """Returns the times of the views: T0 or the first event, before the decisive one, then, and the end."""
     assert run.drive is not None
     begun = [each.time for each in (run.verdict and run.verdict.events) or () if each.time is not None]
-    asked = [when, run.drive.duration, max(when - EARLIER, 0.0), *begun[:1], max(when - BEFORE, 0.0)]
+    asked = [when, run.drive.duration, max(when - EARLIER, 0.0), *[*t0, *begun][:1], max(when - BEFORE, 0.0)]
     found = list[float]()
     for time in asked:
         if all(abs(time - other) > APART for other in found) and (time < when or len(found) < 2):

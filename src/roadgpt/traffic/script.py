@@ -217,7 +217,8 @@ class Script:
     @property
     def event(self) -> Stretch:
         """See ``Traffic.event``."""
-        if self._meets_in > LATER and all(each.has_done for each in self._performers):
+        later = LATER if self._time else math.inf
+        if self._meets_in >= later and all(each.has_done for each in self._performers):
             return "past"
         acts = any(0 < time <= self._time for each in self._performers for time, _ in each.since.values())
         return "now" if acts or self._meets_in <= T0 else "before"

@@ -11,6 +11,7 @@ import numpy as np
 
 from roadgpt.brief.scene import CAR, SIGNALS, Event
 from roadgpt.language.names import Shown
+from roadgpt.language.table import MANEUVERS
 from roadgpt.traffic.traffic import ENDED
 from roadgpt.verdict.criteria import NAMED, Judged
 from roadgpt.verdict.oracle import has_departed
@@ -41,8 +42,9 @@ def events_of(case: Judged, incidents: Sequence[Incident]) -> tuple[Event, ...]:
 
 
 def _ended(event: Event) -> Event:
-    """Says of what has begun and not ended that it has not."""
-    is_open = event.time is not None and event.until is None and not event.why
+    """Says of what has begun and not ended that it has not; what a script releases has no end."""
+    is_open = not event.what.startswith(MANEUVERS["release"].said)
+    is_open &= event.time is not None and event.until is None and not event.why
     return replace(event, why=UNENDED) if is_open else event
 
 

@@ -239,7 +239,7 @@ def _who_drove(drive: "Drive", excuse: str) -> str:
     if not drive.shares:
         return ""
     (own, share), *others = drive.shares.items()
-    run_in = [f"{RUN_IN} drove until {each.end:.1f} s" for each in drive.handovers if each.by == RUN_IN]
+    run_in = [f"{RUN_IN} drove until {each.end:.1f} s (T0)" for each in drive.handovers if each.by == RUN_IN]
     told = " and ".join(f"{name} for {percent(part)}" for name, part in others if name != RUN_IN)
     took = [f"{own} drove {percent(share)} of the way and handed over to {told}"] if told else []
     return "".join(f"; {each}" for each in (*run_in, *took, *filter(None, [excuse])))
@@ -274,7 +274,7 @@ def _kept(drive: "Drive", world: "World", margin: float, beyond: float, behind: 
     reached = f"for {drive['s'][-1]:.0f} m" if behind else f"to the goal after {drive['s'][-1]:.0f} m"
     if drive.ended == "over":
         reached = f"for {drive['s'][-1]:.0f} m, to the end of the event after {drive.duration:.1f} s"
-    reached += f" and stayed {behind}" * bool(behind)
+    reached += f"{',' * (drive.ended == 'over')} and stayed {behind}" * bool(behind)
     if not drive.max_outside:
         return f"kept its lane {reached}, never less than {margin:.2f} m sideways from failing"
     kept = f"kept its lane within the tolerance of {percent(world.limits.oob_tolerance)}"
