@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from roadgpt.brief.plan import read_plan, scene_plan
-from roadgpt.brief.scenarios import LANE_WIDTH, scenarios
+from roadgpt.brief.plan import read_plan, read_scene, scene_plan
+from roadgpt.brief.scenarios import LANE_WIDTH, scenario, scenarios
 from roadgpt.drive import Command, Drive, simulate
 from roadgpt.drive.drive import RUN_IN
 from roadgpt.errors import UsageError
@@ -171,3 +171,8 @@ def test_each_scenario_of_the_catalogue_is_such_a_test() -> None:
         scene = read_plan(f"straight 600 && {each.scene_text}").scene
         assert scene.is_test, each.name
         assert "test_robot" in scene_plan(scene)
+
+
+def test_a_stored_scene_of_a_scenario_drives_on_to_the_goal_as_it_did() -> None:
+    stored = read_scene("ego robot v=50; car ahead v=0 impact=50")  # of ncap:CCRs
+    assert scenario("ncap:CCRs").onto(stored) == stored

@@ -143,9 +143,10 @@ class Scenario(NamedTuple):
             said = "a number is divided by 0" if isinstance(error, ZeroDivisionError) else str(error)
             raise UsageError(f"the scenario '{self}' is not possible: {said}") from error
         own = mirrored_scene(own) if left_hand else own
-        told, added = own.told, other.told
+        told, added = own.told, other.told  # a stored test keeps to the person of its own scene
         for name, value in added.items():
-            if told.get(name, value) != value or (name == "light" in self.given and name not in told):
+            is_other = name != "person" and told.get(name, value) != value
+            if is_other or (name == "light" in self.given and name not in told):
                 raise UsageError(
                     f"the scenario '{self}' and the other scene both say the {name} of the scene, and "
                     "contradict each other; leave one of them out"
