@@ -2,20 +2,19 @@
 
 import os
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from roadgpt.drive.drive import FloatArray
 from roadgpt.drive.view import CameraSpec
 from roadgpt.errors import RoadGPTError, SimulationError
+from roadgpt.road import Road, World
 from roadgpt_beamng.level import ABOVE_GROUND, rotation
 from roadgpt_beamng.level.roads import GOAL, Materials, Strip, level_road
 from roadgpt_beamng.session import Session, client
 from roadgpt_beamng.tracking import CarGeometry, CarSample, car_sample
-
-if TYPE_CHECKING:
-    from roadgpt.road import Road, World
 
 # Materials of the competition's level, and of the art that BeamNG's own levels share.
 TIG = Materials("tig_road_rubber_sticky", "tig_grass", "tig_road_rubber_sticky", "line_white", "line_yellow")
@@ -42,7 +41,7 @@ class LoadedRoad:
     """One road in BeamNG. Use it as ``with LoadedRoad(...) as loaded``; the road and the car are removed at
     the end."""
 
-    def __init__(self, session: Session, road: "Road", world: "World", seed: int) -> None:
+    def __init__(self, session: Session, road: Road, world: World, seed: int) -> None:
         """Loads the road and places the car at its start."""
         self.session, self.bng = session, session.bng
         self.settings = session.settings
@@ -276,7 +275,5 @@ def _triple(point: FloatArray) -> tuple[float, float, float]:
 def as_quaternion(matrix: FloatArray) -> tuple[float, float, float, float]:
     """Returns the quaternion (x, y, z, w) of a rotation matrix, in the order of components that beamngpy
     expects for a car's attitude."""
-    from scipy.spatial.transform import Rotation
-
     x, y, z, w = Rotation.from_matrix(matrix).as_quat().tolist()
     return x, y, z, w

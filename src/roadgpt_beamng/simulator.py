@@ -2,10 +2,10 @@
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from roadgpt.drive import Driver
 from roadgpt.drive.camera_sensor import camera_of
 from roadgpt.drive.drive import COLUMNS, Columns, Drive, Ended, FloatArray
 from roadgpt.drive.drive_monitor import STUCK_WAY, DriveMonitor
@@ -14,15 +14,12 @@ from roadgpt.drive.lane_position import POSE
 from roadgpt.drive.outlook import Outlook
 from roadgpt.drive.view import View
 from roadgpt.errors import RoadGPTError, SimulationError, SimulatorError
+from roadgpt.road import Road, World
 from roadgpt.stopping import look
 from roadgpt_beamng.loaded_road import LoadedRoad
 from roadgpt_beamng.session import Session, session_of
 from roadgpt_beamng.settings import BeamngSettings
 from roadgpt_beamng.tracking import LOCK, CarSample, RoadTracker, interpolate_samples
-
-if TYPE_CHECKING:
-    from roadgpt.drive import Driver
-    from roadgpt.road import Road, World
 
 FALLEN = 1.0  # m below the road's surface
 HALVINGS = 20  # how often the time between two samples is halved to find the moment of an event
@@ -49,7 +46,7 @@ class BeamngSimulator:
         self.settings = BeamngSettings.of() if settings is None else settings
 
     def simulate(
-        self, road: "Road", world: "World", driver: "Driver", seed: int, keep_driving: bool = False
+        self, road: Road, world: World, driver: Driver, seed: int, keep_driving: bool = False
     ) -> Drive:
         """Implements `roadgpt.drive.Simulator.simulate`; the seed is passed to the driver, and also
         determines the random shifts (up to 1 cm) of the road's mesh."""
@@ -79,9 +76,9 @@ class BeamngSimulator:
     def _once(
         self,
         session: Session,
-        road: "Road",
-        world: "World",
-        driver: "Driver",
+        road: Road,
+        world: World,
+        driver: Driver,
         seed: int,
         keep_driving: bool,
     ) -> Drive:
@@ -99,7 +96,7 @@ class BeamngSimulator:
 
 
 def record(
-    loaded: LoadedRoad, road: "Road", world: "World", guard: DriverGuard | None, seed: int, keep_driving: bool
+    loaded: LoadedRoad, road: Road, world: World, guard: DriverGuard | None, seed: int, keep_driving: bool
 ) -> Drive:
     """Runs one driver on the loaded road, and returns the Drive."""
     recorder = DriveLoop(loaded, road, world, guard)
@@ -113,7 +110,7 @@ def record(
 class DriveLoop:
     """Drives one road, step by step, and records the samples."""
 
-    def __init__(self, loaded: LoadedRoad, road: "Road", world: "World", guard: DriverGuard | None) -> None:
+    def __init__(self, loaded: LoadedRoad, road: Road, world: World, guard: DriverGuard | None) -> None:
         """Prepares a drive; ``guard`` asks the driver, and is None if BeamNG's AI drives."""
         self.loaded, self.road, self.world, self.guard = loaded, road, world, guard
         self.track = RoadTracker(road, world, loaded.body)

@@ -3,7 +3,7 @@ a reference node of the car; the pose is that of the centre of gravity."""
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,9 +12,7 @@ from roadgpt.drive.drive import Box, FloatArray
 from roadgpt.drive.lane_position import LanePolygon
 from roadgpt.drive.sampled_road import SampledRoad, locate_on, sample_road
 from roadgpt.errors import SimulationError
-
-if TYPE_CHECKING:
-    from roadgpt.road import Road, World
+from roadgpt.road import Road, World
 
 LOCK = 0.6  # rad, lock angle of the front wheels if it was not measured
 # Distance of the front axle from the middle of the box as a share of the length, and distance between the
@@ -121,7 +119,7 @@ class CarSample(NamedTuple):
 class RoadTracker:
     """Locates the car on the road: station, offset, and share outside the lane."""
 
-    def __init__(self, road: "Road", world: "World", body: CarGeometry) -> None:
+    def __init__(self, road: Road, world: World, body: CarGeometry) -> None:
         self._sampled: SampledRoad = sample_road(road)
         self._lane = LanePolygon.along(road, world)
         self._underside = body.underside

@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 from PIL import Image
+from shapely.geometry.polygon import orient
 
 from roadgpt.export.ego import Poses, goal_of
 from roadgpt.geometry.curve import Array
@@ -183,8 +184,6 @@ def _junction(area: JunctionSurface, number: int) -> list[TriangleMesh]:
 
 def _block(name: str, material: str, area: Area, height: float, up: float) -> TriangleMesh:
     """Returns the closed block under a level area, ``up`` metres higher than its surface."""
-    from shapely.geometry.polygon import orient
-
     flat, corners = triangulated(area)
     bands: list[_Band] = []
     for z, facing, triangles in ((height + up, 1.0, corners), (height - THICKNESS, -1.0, corners[:, ::-1])):

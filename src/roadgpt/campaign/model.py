@@ -8,6 +8,7 @@ from pydantic import Field
 
 from roadgpt.brief.model import Brief, Frozen
 from roadgpt.brief.plan import read_plan
+from roadgpt.design.room import world_for
 from roadgpt.road import Design, World
 from roadgpt.run.model import Outcome, Request
 from roadgpt.verdict.verdict import Cause, Side
@@ -174,7 +175,6 @@ class Cell:
         if "scenario" not in self.settings:
             return self
         from roadgpt.brief.scenarios import LANE_WIDTH, scenario
-        from roadgpt.design.room import world_for  # most campaigns do not need it here
 
         one = scenario(proposal.origin)
         brief = self.brief if self.request.words else read_plan(one.plan)

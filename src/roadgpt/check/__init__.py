@@ -16,17 +16,14 @@ the group ``roadgpt.rules``) are appended to ``strict``."""
 
 from collections.abc import Callable
 from functools import cache
-from typing import TYPE_CHECKING, TypeAlias, cast
+from typing import TypeAlias, cast
 
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding
 from roadgpt.errors import UsageError
-from roadgpt.network import network_of
+from roadgpt.network import Network, network_of
 from roadgpt.road import Road, World
-
-if TYPE_CHECKING:
-    from roadgpt.network import Network
 
 RULE_SETS = {
     "strict": (

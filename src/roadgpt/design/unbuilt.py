@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain, pairwise
-from typing import TYPE_CHECKING
 
 from roadgpt.brief.amount import span
 from roadgpt.brief.junctions import RAMPS, JunctionClause
@@ -10,9 +9,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.errors import DesignError
 from roadgpt.language.names import JunctionKind
 from roadgpt.plural import plural
-
-if TYPE_CHECKING:
-    from roadgpt.road.design import LanesDesign
+from roadgpt.road.design import LanesDesign
 
 TURNING_LANES: Mapping[JunctionKind, int] = {"t_junction": 1, "crossroads": 2}
 """For each kind of junction, how many lanes per direction can turn off there or come from the side."""
@@ -33,7 +30,7 @@ def check_built(brief: Brief) -> None:
         raise DesignError(f"{named} cannot be built yet; leave {'them' if others else 'it'} out")
 
 
-def check_lanes_across(places: Sequence[JunctionClause], lanes: "Sequence[LanesDesign]") -> None:
+def check_lanes_across(places: Sequence[JunctionClause], lanes: Sequence[LanesDesign]) -> None:
     """Raises DesignError if a lane of a road leads nowhere at a junction where a route goes straight on.
     Lanes that do not continue there turn off, or come from the side: one to the left and one to the right at
     most. ``lanes`` are those of each road before, between and behind the ``places``."""

@@ -4,14 +4,14 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from numpy import uint8
+from numpy.typing import NDArray
+
 from roadgpt.drive.view import CameraSpec
 from roadgpt.errors import UsageError
+from roadgpt.road import Road, World
 
 if TYPE_CHECKING:
-    from numpy import uint8
-    from numpy.typing import NDArray
-
-    from roadgpt.road import Road, World
     from roadgpt.scene import Body
 
 POSE = ("x", "y", "z", "heading", "pitch", "roll", "steer", "speed", "brake")
@@ -29,7 +29,7 @@ class CameraSensor:
     """Renders the road as the driver's camera sees it; the image depends only on the road, the world,
     the pose, steering and braking of the car, and the others on the road."""
 
-    def __init__(self, camera: CameraSpec, road: "Road", world: "World") -> None:
+    def __init__(self, camera: CameraSpec, road: Road, world: World) -> None:
         """Mounts a camera on a car on this road."""
         from roadgpt.scene import Camera as Pinhole
         from roadgpt.scene import CameraPlacement, Scenery
@@ -41,7 +41,7 @@ class CameraSensor:
         self._every, self._step = max(1, camera.every), 0
         self._image: NDArray[uint8] | None = None
 
-    def see(self, row: Mapping[str, float], others: "Sequence[Body]" = ()) -> "NDArray[uint8]":
+    def see(self, row: Mapping[str, float], others: "Sequence[Body]" = ()) -> NDArray[uint8]:
         """Returns the image ``(height, width, 3)`` at a control step, ``row`` of a drive. A new image is
         rendered every ``camera.every`` steps; in between, the last image is returned again."""
         from roadgpt.scene import Pose

@@ -20,12 +20,12 @@ from roadgpt.language.names import ActorKind
 from roadgpt.language.table import VEHICLES
 from roadgpt.network.landscape import horizon_around
 from roadgpt.network.lanes import HEADROOM
+from roadgpt.road import Road, World
 from roadgpt.traffic import STEP, Actor, TestedCar, Traffic
 from roadgpt.traffic.actor import bodies
 
 if TYPE_CHECKING:
     from roadgpt.drive.drive_monitor import DriveMonitor
-    from roadgpt.road import Road, World
     from roadgpt.scene import Body
 
 SEEN = 200.0  # m, between the middles of the car and of another
@@ -168,7 +168,7 @@ def look(
     return in_sight(states, looks, eye, near, horizon, order, seen, count, SEEN), touches
 
 
-def heights_along(road: "Road") -> FloatArray:
+def heights_along(road: Road) -> FloatArray:
     """Returns points of a road every SPACING metres, or none if it is flat, so that it hides nobody."""
     line = road.at(np.arange(0.0, road.length, SPACING))
     is_hilly = np.abs(np.diff(line[:, 2], 2)).max(initial=0.0) > FLAT
@@ -185,9 +185,7 @@ def looks_of(actors: Sequence[Actor], scene: Scene) -> FloatArray:
 class Company:
     """The others on the road during one drive."""
 
-    def __init__(
-        self, traffic: Traffic, box: Box, monitor: "DriveMonitor", road: "Road", world: "World"
-    ) -> None:
+    def __init__(self, traffic: Traffic, box: Box, monitor: "DriveMonitor", road: Road, world: World) -> None:
         self._traffic, self._box, self._monitor = traffic, box, monitor
         passages = road.passages if traffic.lights is not None else ()
         lines = [(each.light_line, each.arrival) for each in passages]

@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from roadgpt.brief.scene import Event
 from roadgpt.errors import SimulationError, UsageError, needed
-from roadgpt.language.names import What
+from roadgpt.language.names import ActorKind, What
 from roadgpt.reading import arrays_in, json_of, strictly
+from roadgpt.road import Road, World
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-    from roadgpt.brief.scene import Event
-    from roadgpt.road import Road, World
     from roadgpt.traffic import Tracks
 
 FloatArray = NDArray[np.float64]
@@ -192,7 +192,7 @@ class Drive:
     shape (n - 1, 3), NaN elsewhere; None if the script had neither."""
     tasks: tuple[GivenTask, ...] = ()
     """What the scene told the driver to do itself, in order."""
-    history: "tuple[Event, ...]" = ()
+    history: tuple[Event, ...] = ()
     """What the scene prescribes of its actors and of the tested car, each with whether, when and where it
     happened; empty in drives of older versions."""
 
@@ -206,7 +206,7 @@ class Drive:
     def __len__(self) -> int:
         return len(self.columns["time"])
 
-    def followed(self, road: "Road", world: "World") -> "Road":
+    def followed(self, road: Road, world: World) -> Road:
         """Returns a road with the lane that the car was to keep to, where it was made to change lanes."""
         if not self.moves:
             return road
@@ -373,14 +373,11 @@ def unpacked(header: Any, columns: Columns, states: NDArray[Any] | None) -> Driv
     )
 
 
-def _history(events: Any) -> "tuple[Event, ...]":
-    from roadgpt.brief.scene import Event
-
+def _history(events: Any) -> tuple[Event, ...]:
     return strictly(tuple[Event, ...], events)
 
 
 def _tracks(actors: Any, states: NDArray[Any], duration: float) -> "Tracks":
-    from roadgpt.language.names import ActorKind
     from roadgpt.traffic import STEP, Actor, Size, Tracks
 
     rows = strictly(tuple[tuple[str, ActorKind, tuple[float, float, float]], ...], actors)

@@ -2,7 +2,6 @@
 
 import math
 from operator import itemgetter
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,10 +9,8 @@ from numpy.typing import ArrayLike
 from roadgpt.drive.drive import COLUMNS, PEDALS, RETURNS, SCRIPT, Box, Ended, FloatArray, Mishap
 from roadgpt.drive.lane_position import POSE, MarkingMonitor
 from roadgpt.errors import SimulationError
+from roadgpt.road import Road, World
 from roadgpt.road.road import GOAL
-
-if TYPE_CHECKING:
-    from roadgpt.road import Road, World
 
 STUCK_TIME = 10.0  # s within which a car must move STUCK_WAY (SBFT)
 STUCK_WAY = 1.0  # m
@@ -33,7 +30,7 @@ class DriveMonitor:
     """Watches one drive along a road, from its first step to its end."""
 
     def __init__(
-        self, road: "Road", world: "World", box: Box, keep_driving: bool = False, among_others: bool = False
+        self, road: Road, world: World, box: Box, keep_driving: bool = False, among_others: bool = False
     ) -> None:
         """Prepares the checks with the tolerances of the world. If the world sets ``lane_departure``, the
         front tyres are checked, too. With ``keep_driving``, the car may leave its lane; so may a car among
@@ -82,7 +79,7 @@ class DriveMonitor:
             return mishap
         return "timeout" if time >= self.limit - ROUNDING else None
 
-    def keep_to(self, road: "Road", world: "World", box: Box) -> None:
+    def keep_to(self, road: Road, world: World, box: Box) -> None:
         """Sets the road whose driven lane is the one that the car is to keep to."""
         self._tyres = MarkingMonitor.for_tyres(road, world, box) if self._is_watched else None
         # The end of the lane's inner edge; with one lane in each direction it is that of the centre line.

@@ -15,10 +15,10 @@ import numpy as np
 from roadgpt.drive.drive import FloatArray, Handover
 from roadgpt.drive.view import View
 from roadgpt.errors import DriverError
+from roadgpt.road import Road, World
 
 if TYPE_CHECKING:
     from roadgpt.drive.script_hand import ScriptHand
-    from roadgpt.road import Road, World
 
 NOTHING = (math.nan, math.nan, math.nan)
 ONE_ANSWER = 2.0  # s of wall time for one `steer`
@@ -52,7 +52,7 @@ class DriverGuard:
         self.handovers: list[Handover] = []
         self.script, self._unheeded = script, list[tuple[float, float, float]]()
 
-    def start(self, road: "Road", world: "World", seed: int) -> None:
+    def start(self, road: Road, world: World, seed: int) -> None:
         """Calls the driver's ``start``, if it has one: also when the car was made to change lanes."""
         start = getattr(self._driver, "start", None)
         if start is not None:

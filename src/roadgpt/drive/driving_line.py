@@ -9,7 +9,6 @@ where they stop."""
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,10 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 from roadgpt.drive.outlook import limits_of
 from roadgpt.drive.view import View
 from roadgpt.geometry.curve import LEAST_STRETCH
+from roadgpt.road import Road, World
 from roadgpt.road.speed_profile import GRAVITY, PathGeometry
-
-if TYPE_CHECKING:
-    from roadgpt.road import Road, World
 
 STEP = 0.5  # m between stations
 BEYOND = 60.0  # m by which the line continues straight beyond the road's end, for drivers that look ahead
@@ -63,7 +60,7 @@ class DrivingLine(PathGeometry):
         return (i, at - i) if i <= last else (last, 1.0)
 
 
-def stations(road: "Road") -> FloatArray:
+def stations(road: Road) -> FloatArray:
     """Returns the stations in metres at which a line is computed, from start to end of the road, shape
     ``(n,)``."""
     return np.linspace(0.0, road.length, max(2, math.ceil(road.length / STEP)) + 1)
@@ -79,7 +76,7 @@ def smoothed(values: FloatArray, step: float, half_width: float) -> FloatArray:
     return np.convolve(held, window / window.sum(), mode="valid")
 
 
-def line_along(road: "Road", offset: ArrayLike) -> DrivingLine:
+def line_along(road: Road, offset: ArrayLike) -> DrivingLine:
     """Returns the driving line at an offset in metres to the left of the centre line, one number or one for
     each of ``stations(road)``. On a road with superelevation, it is measured along the surface.
 
@@ -166,7 +163,7 @@ def turning_speed(curvature: float) -> float:
     return SPEED / 3.6 / math.pow(abs(curvature), EXPONENT)
 
 
-def lane_limits(road: "Road", world: "World", line: DrivingLine) -> list[float]:
+def lane_limits(road: Road, world: World, line: DrivingLine) -> list[float]:
     """Returns the speed limit in m/s of the lanes at each station of a line; infinite if they have none."""
     found = [math.inf] * len(line.x)
     for start, limit in limits_of(road, world):
@@ -176,7 +173,7 @@ def lane_limits(road: "Road", world: "World", line: DrivingLine) -> list[float]:
 
 
 def highest_speeds(
-    road: "Road", world: "World", line: DrivingLine, braking: float = math.inf
+    road: Road, world: World, line: DrivingLine, braking: float = math.inf
 ) -> list[float] | None:
     """Returns the speed in m/s that the limits of lanes, stop signs and the bends of junctions allow, at each
     station of a line.
@@ -203,7 +200,7 @@ def highest_speeds(
     return found
 
 
-def share_of_junction(road: "Road", s: FloatArray) -> FloatArray:
+def share_of_junction(road: Road, s: FloatArray) -> FloatArray:
     """Returns a weight for each station in metres, shape ``(n,)``: 1 inside a junction, 0 far from junctions.
 
     Within ``BLEND`` metres before and behind a junction, the weight falls smoothly from 1 to 0."""
@@ -215,7 +212,7 @@ def share_of_junction(road: "Road", s: FloatArray) -> FloatArray:
 
 
 def kept_in_lane(
-    road: "Road", world: "World", s: FloatArray, offset: FloatArray, inwards: FloatArray
+    road: Road, world: World, s: FloatArray, offset: FloatArray, inwards: FloatArray
 ) -> FloatArray:
     """Returns the offsets of a planned line, changed in junctions so that the car keeps to its lane.
 

@@ -11,7 +11,6 @@ it goes before those who can still stop without effort. At crosswalks: Vienna Co
 import math
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,6 +23,7 @@ from roadgpt.network import legs_of, network_of
 from roadgpt.network.lanes import Lanes, lanes_of
 from roadgpt.network.markings import CROSSWALK
 from roadgpt.network.network import Leg
+from roadgpt.road import Road, World
 from roadgpt.traffic.following import (
     AGAINST_MUST,
     EASY,
@@ -37,9 +37,6 @@ from roadgpt.traffic.following import (
     is_awaited,
     time_over,
 )  # fmt: skip
-
-if TYPE_CHECKING:
-    from roadgpt.road import Road, World
 
 HEADWAY = 1.5  # s
 PULL = 1.5  # m/s^2, with which the car is expected to drive on, as the cars of the traffic
@@ -56,7 +53,7 @@ BEFORE = 4.0  # s before the road on which its route changes lanes, the driver b
 class GivingWay:
     """The junctions and crosswalks of one route, and which of them the driver waits before."""
 
-    def __init__(self, road: "Road", world: "World", line: DrivingLine) -> None:
+    def __init__(self, road: Road, world: World, line: DrivingLine) -> None:
         network, legs = network_of(road, world), legs_of(road, world)
         lanes = lanes_of(network)
         self._junctions: list[tuple[float, float, FloatArray]] = []

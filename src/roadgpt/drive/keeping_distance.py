@@ -22,10 +22,10 @@ from roadgpt.drive.driving_line import (
     pedals_for,
 )
 from roadgpt.drive.view import Command, Others, View
+from roadgpt.road import Road
 
 if TYPE_CHECKING:
     from roadgpt.drive.giving_way import GivingWay
-    from roadgpt.road import Road
 
 TIME_GAP = 1.5  # s, to the one ahead: the usual setting; ISO 15622 asks for at least 0.8 s
 PULL, BRAKE = 1.5, 2.0  # m/s^2, IDM's a and b, as the cars of the traffic have
@@ -43,7 +43,7 @@ GOES_ON = 0.1  # m/s^2, from which on a standing car goes on: 7 cm beyond the le
 class KeepingDistance:
     """Keeps a driver's distance along its planned line."""
 
-    def __init__(self, line: DrivingLine, road: "Road | None" = None) -> None:
+    def __init__(self, line: DrivingLine, road: Road | None = None) -> None:
         """Prepares for a line, and the stop lines of a route if it is to stop at them."""
         self._line = line
         self._stop_lines = [

@@ -1,18 +1,15 @@
 """Computes how far a car is outside its lane: the share of its box outside, and its reach beyond markings."""
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from roadgpt.compiled import compiled, inlined
-from roadgpt.drive.drive import Box, FloatArray
+from roadgpt.drive.drive import Box, Drive, FloatArray
 from roadgpt.drive.sampled_road import CURVATURE, SampledRoad, locate_on, room_at, sample_road, stations_of
 from roadgpt.geometry.curve import LEAST_STRETCH
-
-if TYPE_CHECKING:
-    from roadgpt.drive.drive import Drive
-    from roadgpt.road import Road, World
+from roadgpt.road import Road, World
 
 STEP = 0.5  # m, longest quad; a chord of that length is 2 mm off a 14 m arc
 REACH = 8.0  # m along the road, ahead of and behind the car's station, within which its box must lie
@@ -32,7 +29,7 @@ class LanePolygon(NamedTuple):
     step: float  # distance in metres along the centre line between rows of ``edges``
 
     @classmethod
-    def along(cls, road: "Road", world: "World") -> "LanePolygon":
+    def along(cls, road: Road, world: World) -> "LanePolygon":
         """Returns the driven lane of a road, from its start to its end."""
         count = max(2, math.ceil(road.length / STEP))
         s = np.linspace(0.0, road.length, count + 1)
@@ -140,14 +137,14 @@ class MarkingMonitor(NamedTuple):
     """Points of the car, shape (n, 3): metres ahead, to the left and up, from its centre of gravity."""
 
     @classmethod
-    def for_tyres(cls, road: "Road", world: "World", box: Box) -> "MarkingMonitor":
+    def for_tyres(cls, road: Road, world: World, box: Box) -> "MarkingMonitor":
         """Returns a monitor for the outer edges of the front tyres."""
         side = box.tyres / 2
         points = [(box.axle, side, -box.height), (box.axle, -side, -box.height)]
         return cls._of(road, world, points)
 
     @classmethod
-    def for_body(cls, road: "Road", world: "World", box: Box) -> "MarkingMonitor":
+    def for_body(cls, road: Road, world: World, box: Box) -> "MarkingMonitor":
         """Returns a monitor for both sides of the car's body, corners included."""
         front, side = box.ahead + box.length / 2, box.width / 2
         way = np.linspace(front - box.length, front, ALONG)
@@ -155,7 +152,7 @@ class MarkingMonitor(NamedTuple):
         return cls._of(road, world, points)
 
     @classmethod
-    def _of(cls, road: "Road", world: "World", points: list[tuple[float, float, float]]) -> "MarkingMonitor":
+    def _of(cls, road: Road, world: World, points: list[tuple[float, float, float]]) -> "MarkingMonitor":
         sampled = sample_road(road)
         edges = np.column_stack(world.profile_of(road).marking_limits(stations_of(sampled)))
         return cls(sampled, edges, np.array(points))
@@ -170,7 +167,7 @@ class MarkingMonitor(NamedTuple):
         poses = np.ascontiguousarray(poses, dtype=np.float64)
         return farthest(table, first, step, poses, self.points, self.edges, float(floor))
 
-    def along(self, drive: "Drive", floor: float = -math.inf) -> FloatArray:
+    def along(self, drive: Drive, floor: float = -math.inf) -> FloatArray:
         """Returns ``beyond`` for every step of a drive."""
         return self.beyond(np.stack([drive[name] for name in POSE], axis=-1), floor)
 

@@ -1,7 +1,6 @@
 """Finds where places lie along the tested car's road, and in which of its driving lanes."""
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,10 +10,7 @@ from roadgpt.drive.outlook import from_left
 from roadgpt.geometry.curve import LEAST_STRETCH, Array
 from roadgpt.network import legs_of, network_of
 from roadgpt.network.line import SPACING
-
-if TYPE_CHECKING:
-    from roadgpt.road import Road, World
-
+from roadgpt.road import Road, World
 
 FEW = 8  # points, of which one is looked at before its neighbours are
 
@@ -54,7 +50,7 @@ def find(
 class LanesAlong:
     """The driving lanes along a road or route, every SPACING metres."""
 
-    def __init__(self, road: "Road", world: "World") -> None:
+    def __init__(self, road: Road, world: World) -> None:
         network, rows, first = network_of(road, world), list[list[Array]](), 0.0
         s = np.linspace(0.0, road.length, max(int(road.length / SPACING), 1) + 1)
         self._points = np.column_stack([road.at(s, 0.0)[:, :2], road.heading(s), s, road.curvature(s)])

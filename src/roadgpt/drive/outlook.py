@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 from roadgpt.drive.view import JunctionAhead, SignAhead
 from roadgpt.geometry import wrap_angle
 from roadgpt.network import is_route, legs_of, network_of
+from roadgpt.road import Profile, Road, World
 
 if TYPE_CHECKING:
     from roadgpt.network import Passage, Route
-    from roadgpt.road import Profile, Road, World
 
 
 class Outlook:
     """The junctions ahead and the lanes beside the driver's own lane, at each station of a road or route."""
 
-    def __init__(self, road: "Road", world: "World") -> None:
+    def __init__(self, road: Road, world: World) -> None:
         self._route = road if is_route(road) else None  # as drivers are promised: see ``View.route``
         self._junctions = [_junction(road, each) for each in road.passages]
         self._ends = [end for _, end, _ in self._junctions]
@@ -52,7 +52,7 @@ class Outlook:
         return tuple([sign._replace(distance=max(at - s, 0.0)) for at, end, sign in self._signs if s < end])
 
 
-def limits_of(road: "Road", world: "World") -> list[tuple[float, float]]:
+def limits_of(road: Road, world: World) -> list[tuple[float, float]]:
     """Returns the stations at which speed limits begin that the lanes of a road or route have, and the limits
     in m/s; of lanes that have none the limit is that of the world. Empty if no lane has one."""
     network, usual, found = network_of(road, world), world.limits.speed_limit, list[tuple[float, float]]()
@@ -66,19 +66,19 @@ def limits_of(road: "Road", world: "World") -> list[tuple[float, float]]:
     return found
 
 
-def _junction(road: "Road", passage: "Passage") -> tuple[float, float, tuple[str, float, int, str]]:
+def _junction(road: Road, passage: "Passage") -> tuple[float, float, tuple[str, float, int, str]]:
     """Returns between which stations a junction lies, and what a driver sees of it from anywhere."""
     turn = float(wrap_angle(road.heading(passage.end) - road.heading(passage.start)))
     return passage.start, passage.end, (passage.entered.kind, turn, passage.exit, passage.control)
 
 
-def _beside(profile: "Profile", lane: int) -> tuple[int, int]:
+def _beside(profile: Profile, lane: int) -> tuple[int, int]:
     row = from_left(profile, lane)
     to_left = row.index(lane)
     return to_left, len(row) - 1 - to_left
 
 
-def from_left(profile: "Profile", lane: int) -> list[int]:
+def from_left(profile: Profile, lane: int) -> list[int]:
     """Returns the driving lanes of a road from left to right, as they are seen along one of them."""
     # OpenDRIVE's ids fall from left to right as seen along the road
     return sorted((*profile.along_ids, *profile.against_ids), reverse=profile.leads_along(lane))

@@ -6,15 +6,13 @@ table continues straight beyond both ends. On a road with superelevation, the su
 pitched centre line, as in ``Road.at``."""
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from roadgpt.compiled import announce, inlined
 from roadgpt.drive.drive import FloatArray
-
-if TYPE_CHECKING:
-    from roadgpt.road import Road
+from roadgpt.road import Road
 
 STEP = 0.25  # m, desired distance between stations: keeps the cubic within 1 micrometre of a 14 m arc
 BEYOND = 30.0  # m of straight road in the table before the start and after the end
@@ -37,7 +35,7 @@ class SampledRoad(NamedTuple):
     length: float  # length of the road itself in metres
 
 
-def sample_road(road: "Road") -> SampledRoad:
+def sample_road(road: Road) -> SampledRoad:
     """Returns the table of stations of a road."""
     length = float(road.length)
     count = max(2, math.ceil(length / STEP))

@@ -5,18 +5,15 @@ corner comes to the edge of the lanes before that, it stops, reverses at full lo
 other edge, and goes on; then it drives back in the middle of the oncoming lane."""
 
 import math
-from typing import TYPE_CHECKING
 
 from roadgpt.drive.drive import Box
 from roadgpt.drive.driving_line import pedals_for
 from roadgpt.drive.view import View
 from roadgpt.errors import SceneError
 from roadgpt.geometry import wrap_angle
+from roadgpt.road import Road, World
 from roadgpt.traffic.maneuver import REVERSING, Maneuver
 from roadgpt.traffic.places import SIGN, offset_of
-
-if TYPE_CHECKING:
-    from roadgpt.road import Road, World
 
 CREEPS = 1.8  # m/s, at full lock
 PULL = 2.0  # 1/s, acceleration per speed error
@@ -33,7 +30,7 @@ MOST = 12  # changes of gear, after which the road is too narrow
 class Shunt:
     """One such movement. Distances to the left are those of its road, as the car came."""
 
-    def __init__(self, road: "Road", world: "World", box: Box, maneuver: Maneuver, view: View) -> None:
+    def __init__(self, road: Road, world: World, box: Box, maneuver: Maneuver, view: View) -> None:
         """Raises SceneError if the road has no lane to go back in."""
         self._road, self._world, self._box, self._n = road, world, box, maneuver.n
         self._turns_round, self._middle = maneuver.what == "u_turn", view.t

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from roadgpt.language.names import ActorKind, What
 from roadgpt.language.table import ROAD_USERS, VEHICLES
+from roadgpt.road import Road, World
 
 if TYPE_CHECKING:
     from roadgpt.network import Route
-    from roadgpt.road import Road, World
 
 
 class JunctionAhead(NamedTuple):
@@ -135,8 +135,8 @@ class View(NamedTuple):
     """Offset of the car in metres to the left of the centre line. The middle of its lane is at
     ``world.profile_of(road).middle(s)``. On a road with superelevation, the offset is measured along the
     surface, to the foot of the perpendicular from the centre of gravity."""
-    road: "Road"
-    world: "World"
+    road: Road
+    world: World
     steer: float
     """Current angle of the front wheels in radians, left positive."""
     dt: float

@@ -9,20 +9,17 @@ from bisect import bisect_right
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from itertools import groupby
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from roadgpt.geometry import wrap_angle
 from roadgpt.geometry.curve import LEAST_STRETCH, Array
 from roadgpt.network.lanes import lanes_of
 from roadgpt.network.road_or_route import is_route
+from roadgpt.road import Road, World
 from roadgpt.road.speed_profile import GRAVITY
-
-if TYPE_CHECKING:
-    from scipy.spatial import cKDTree
-
-    from roadgpt.road import Road, World
 
 SPACING = 0.5  # m between the points of a line
 GRIP, EASE = 7.0, 3.0  # m/s^2: the most sideways in a bend, and with what actors slow down before it
@@ -121,9 +118,7 @@ class Line:
         return x + beyond * cos - t * sin, y + beyond * sin + t * cos, z, heading
 
     @cached_property
-    def _tree(self) -> "cKDTree":
-        from scipy.spatial import cKDTree
-
+    def _tree(self) -> cKDTree:
         return cKDTree(self.points[:, :2])
 
     @cached_property
@@ -223,7 +218,7 @@ class Line:
 
 
 @lru_cache(maxsize=4)
-def driven_line(road: "Road", world: "World") -> Line:
+def driven_line(road: Road, world: World) -> Line:
     """Returns the middle of the lane that the tested car is to follow; the same Line for the same road."""
     s, profile = np.linspace(0.0, road.length, max(int(road.length / SPACING), 1) + 1), world.profile_of(road)
     line = Line.through(road.at(s, profile.middle(s)), profile.width(s), s)

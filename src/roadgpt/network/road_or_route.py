@@ -6,12 +6,12 @@ builds or describes networks; a single road needs none of those modules."""
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from typing_extensions import TypeIs
+
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, Geometry, Road, World, build
 
 if TYPE_CHECKING:
-    from typing_extensions import TypeIs
-
     from roadgpt.network.network import Leg, Network, NetworkRoad
     from roadgpt.network.route import Route
 

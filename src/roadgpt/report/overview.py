@@ -19,6 +19,7 @@ from matplotlib.transforms import Affine2D
 from roadgpt.campaign.folder_record import has_tests, open_record
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
+from roadgpt.network.network import network_from_json
 from roadgpt.reading import read_json
 from roadgpt.report.canvas import (
     DARKER,
@@ -39,7 +40,7 @@ from roadgpt.report.canvas import (
     new_figure,
     save_all,
 )
-from roadgpt.report.plan_view import ASPHALT, FAR_ASPHALT, GROUND, STEPS
+from roadgpt.report.plan_view import ASPHALT, FAR_ASPHALT, GROUND, STEPS, path_of
 from roadgpt.run.execution import FIELDS
 from roadgpt.run.folder import run_of_test
 from roadgpt.verdict import graded, percent
@@ -144,9 +145,6 @@ def _paved(path: Path) -> Outline | None:
     data = _loaded(run / "road.json")
     if not isinstance(data, dict) or "network" not in data:
         return None
-    from roadgpt.network.network import network_from_json
-    from roadgpt.report.plan_view import path_of
-
     return path_of(network_from_json(data["network"]).paved)
 
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from statistics import mean
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
@@ -25,21 +25,18 @@ from pydantic import (
 
 from roadgpt.brief.amount import Amount, Frozen, exactly
 from roadgpt.brief.beside import friction_of, slipperiest
+from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import read_scene, scene_plan
 from roadgpt.brief.scene import LAND_KINDS, Scene, with_named
 from roadgpt.brief.visibility import weather_drawn
 from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP
 from roadgpt.errors import BriefError, SceneError, UsageError
+from roadgpt.geometry import CubicProfile
 from roadgpt.ground.given import BESIDE, NAME, GivenGround
 from roadgpt.language.names import CentreLine
-from roadgpt.road.road import SHORTEST_DRIVE, START
+from roadgpt.road.profile import Profile, superelevation
+from roadgpt.road.road import SHORTEST_DRIVE, START, Road
 from roadgpt.settings import ROWS, field, span
-
-if TYPE_CHECKING:
-    from roadgpt.brief.model import Brief
-    from roadgpt.geometry import CubicProfile
-    from roadgpt.road.profile import Profile
-    from roadgpt.road.road import Road
 
 ORACLES: dict[str, dict[str, Any]] = {
     "half": {"oob_tolerance": 0.5, "lane_departure": False},
@@ -220,20 +217,16 @@ class CrossSection(BaseModel):
     """Width in metres of the firm shoulder beside the carriageway. With 0 the road floats above the ground,
     as in the RoadGPT thesis."""
 
-    def profile(self, length: float) -> "Profile":
+    def profile(self, length: float) -> Profile:
         """Returns the Profile of a road that is ``length`` metres long, without superelevation."""
-        from roadgpt.road.profile import Profile
-
         forward, backward = map(int, self.lanes.split("+"))
         made = Profile.of(forward, backward, self._width(length), self.shoulder)
         return made if self.centre_line is None else replace(made, centre_marking=self.centre_line)
 
-    def _width(self, length: float) -> "float | CubicProfile":
+    def _width(self, length: float) -> float | CubicProfile:
         first, last = self.lane_width, self.lane_width_end
         if last is None or last == first:
             return first
-        from roadgpt.geometry import CubicProfile
-
         return CubicProfile.smooth([(0.0, first), (length, last)])
 
     @property
@@ -361,7 +354,7 @@ class World(BaseModel):
         }
         return World.model_validate(kept | values)
 
-    def in_scene_of(self, brief: "Brief | None") -> "World":
+    def in_scene_of(self, brief: Brief | None) -> "World":
         """Returns the World with the scene of a Brief, with land and weather that its words name, and with
         mountains around a mountain road. Where a scene was given to this World, what it says is kept, and
         what it leaves open is that of the Brief; an empty one takes all of that away."""
@@ -392,7 +385,7 @@ class World(BaseModel):
         scene = weather_drawn(self.scene, seed)
         return self if scene is self.scene else self.changed(scene=scene)
 
-    def on_surface_of(self, brief: "Brief | None") -> "World":
+    def on_surface_of(self, brief: Brief | None) -> "World":
         """Returns the World with the friction of the surface that its scene or a Brief names, such as a wet
         road. A friction that was given to this World is kept, even if it equals the default."""
         of_words = brief.beside if brief and not (self.scene.surface or self._is_emptied) else ()
@@ -401,7 +394,7 @@ class World(BaseModel):
             return self
         return self.changed(friction=friction)
 
-    def with_lanes_of(self, brief: "Brief | None") -> "World":
+    def with_lanes_of(self, brief: Brief | None) -> "World":
         """Returns the World with the ``lanes`` and ``centre_line`` that a Brief of a single road requires.
         Those that were given to this World are kept, even if they equal the defaults."""
         if brief is None or brief.is_of_network:
@@ -411,7 +404,7 @@ class World(BaseModel):
         changes = {name: value for name, value in wanted.items() if value is not None and name not in given}
         return self.changed(**changes) if changes else self
 
-    def with_numbers_of(self, brief: "Brief | None") -> "World":
+    def with_numbers_of(self, brief: Brief | None) -> "World":
         """Returns the World with the width of lanes and the speed limit of a Brief, where none was given."""
         if brief is None:
             return self
@@ -448,7 +441,7 @@ class World(BaseModel):
             return 0.0 if self.scene.parks else self.limits.speed_limit
         return _middle(self.scene.speed) / KMH
 
-    def start_on(self, road: "Road") -> float:
+    def start_on(self, road: Road) -> float:
         """Returns the station in metres of the tested car's centre of gravity at the start. Raises SceneError
         if the scene says a place that the road does not have."""
         if self.scene.station is None:
@@ -472,7 +465,7 @@ class World(BaseModel):
                 return _middle(patch.friction)
         return self.site.friction
 
-    def profile_of(self, road: "Road") -> "Profile":
+    def profile_of(self, road: Road) -> Profile:
         """Returns the Profile of a road: ``road.profile`` or, if that is None, one made from ``section``.
         Raises UsageError if bends are banked here, and the road was not passed through ``lay``."""
         if road.profile is not None:
@@ -481,7 +474,7 @@ class World(BaseModel):
             raise UsageError("the road has no superelevation yet; use the road that world.lay(road) returns")
         return self._profile(road.length)
 
-    def _profile(self, length: float) -> "Profile":
+    def _profile(self, length: float) -> Profile:
         profile = self.section.profile(length)
         lane = self.scene.lane_driven(profile.left_hand)
         if lane is None:
@@ -489,7 +482,7 @@ class World(BaseModel):
         driven = profile.driven + 1 - lane if lane > 0 else -1 - lane
         return replace(profile, driven=min(max(driven, 0), profile.driven))
 
-    def lay(self, road: "Road") -> "Road":
+    def lay(self, road: Road) -> Road:
         """Returns the road with the lanes and banked bends of this World's ``section``. A road that has a
         Profile of its own keeps it. If ``section`` has two lanes of constant width with the default centre
         line and no banked bends, the road is returned unchanged."""
@@ -498,8 +491,6 @@ class World(BaseModel):
             return road
         profile = self._profile(road.length)
         if section.bank != "none":
-            from roadgpt.road.profile import superelevation
-
             angle = superelevation(
                 road.plan, profile.paved_reach, self.limits.speed_limit, section.bank_ratio
             )

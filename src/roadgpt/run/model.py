@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Self
+from typing import Any, Literal, Self
 
 import numpy as np
 from pydantic import SerializerFunctionWrapHandler, model_serializer
@@ -12,14 +12,12 @@ from roadgpt.brief.model import Brief, Frozen
 from roadgpt.chat import ChatSettings, Spent
 from roadgpt.check import Finding
 from roadgpt.design import DesignReport
+from roadgpt.drive import Drive
 from roadgpt.drive.loading import driver_from_file, needs_permission
 from roadgpt.errors import GivenUpError, UsageError
 from roadgpt.road import Design, Road, World
 from roadgpt.road.world import Parts
-
-if TYPE_CHECKING:
-    from roadgpt.drive import Drive
-    from roadgpt.verdict import Verdict
+from roadgpt.verdict import Verdict
 
 Outcome = Literal["PASS", "VALID", "UNAVOIDABLE", "NOT TESTED", "FAIL", "INVALID", "ERROR"]
 """The outcome of a Run, from the best to the worst. UNAVOIDABLE: a collision that no careful driver could
@@ -129,8 +127,8 @@ class Run:
     design: Design | None = None
     road: Road | None = None
     findings: tuple[Finding, ...] = ()
-    drive: "Drive | None" = None
-    verdict: "Verdict | None" = None
+    drive: Drive | None = None
+    verdict: Verdict | None = None
     rounds: int = 0
     """Number of drafts that the designer made."""
     designing: DesignReport | None = None

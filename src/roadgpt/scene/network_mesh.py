@@ -14,6 +14,7 @@ from itertools import pairwise
 from typing import Literal, NamedTuple
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from roadgpt.geometry.curve import Array
@@ -291,8 +292,6 @@ def patches_of(road: Road, world: World, ground: Ground) -> tuple[list[Patch], L
 def _road(
     network: Network, member: NetworkRoad, start: float, is_laid: bool, has_others: bool = True
 ) -> list[Patch]:
-    import shapely
-
     road, profile = member.road, member.profile
     s = green = stations_of(member)
     if has_others:
@@ -339,8 +338,6 @@ def near_and_far(area: JunctionSurface) -> tuple[Area, Area]:
 
 def _level(area: Area, height: float, kind: int, station: float, beside: "Area | None" = None) -> Patch:
     """Returns a level area; with ``beside``, its offsets are the distances from that area."""
-    import shapely
-
     flat, triangles = triangulated(area)
     if beside is None:
         s, t = flat[:, 0] - flat[:, 0].min(), flat[:, 1] - flat[:, 1].min()

@@ -8,7 +8,7 @@ tested car, clockwise from its front left corner; each face counts as 1."""
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import count
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from roadgpt.brief.scene import STRUCK
 from roadgpt.errors import SceneError
 from roadgpt.geometry.boxes import touching, turned
 from roadgpt.network.line import driven_line
+from roadgpt.road import Road, World
 from roadgpt.road.road import GOAL
 from roadgpt.traffic.actor import HEADING, SIZES, STEP, FloatArray, Size, TestedCar, X, Y
 from roadgpt.traffic.crash import first_touch
@@ -23,9 +24,6 @@ from roadgpt.traffic.performer import Performer
 from roadgpt.traffic.places import SIGN
 from roadgpt.traffic.script import Script
 from roadgpt.traffic.traffic import Aiming, Mover, Stage, Traffic
-
-if TYPE_CHECKING:
-    from roadgpt.road import Road, World
 
 LASTS, SLOWEST = 120.0, 1.0  # s, after which a drive among others that is slower in m/s is over
 CLOCKWISE = ("front", "right", "rear", "left")
@@ -38,9 +36,7 @@ WIDE = {"along": 0.25, "aside": 0.25, "time": 0.5}
 INSIDE, PASSED = 1.0, 20.0  # m between middles: they have touched; they have passed each other
 
 
-def steady(
-    road: "Road", world: "World", size: Size = SIZES["car"], ahead: float = 0.0
-) -> Iterator[TestedCar]:
+def steady(road: Road, world: World, size: Size = SIZES["car"], ahead: float = 0.0) -> Iterator[TestedCar]:
     """Yields, every STEP seconds, a tested car that keeps to the middle of its lane and to the speed of the
     scene. The middle of its box, of a ``size``, is ``ahead`` metres before its centre of gravity."""
     way, v = driven_line(road, world), world.first_speed

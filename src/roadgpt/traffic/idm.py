@@ -14,10 +14,10 @@ changes, Transp. Res. Record 1999, 2007): these seconds lie between its first an
 import math
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from roadgpt.compiled import bound
 from roadgpt.language.names import ActorKind, Flow
@@ -26,15 +26,12 @@ from roadgpt.network import legs_of, network_of
 from roadgpt.network.lanes import Lanes, lanes_of
 from roadgpt.network.line import LEAST_GRIP, SLOWING
 from roadgpt.network.network import Leg, Network, RoadEnd
+from roadgpt.road import Road
 from roadgpt.traffic import following as f
-from roadgpt.traffic.actor import SIZES, SPEED, STEP, Actor, FloatArray
+from roadgpt.traffic.actor import SIZES, SPEED, STEP, Actor, FloatArray, TestedCar
 from roadgpt.traffic.lane_map import PER_CHANGE, PF, PG, LaneMap, lane_map, on_friction, place_on
 from roadgpt.traffic.lights import Lights
-
-if TYPE_CHECKING:
-    from roadgpt.road import Road
-    from roadgpt.traffic.actor import TestedCar
-    from roadgpt.traffic.traffic import Stage
+from roadgpt.traffic.traffic import Stage
 
 DENSITY: Mapping[str, float] = {name: per_km / 1000.0 for name, per_km in FLOWS.items()}
 """Vehicles for each metre of a lane by the name of the flow."""
@@ -65,7 +62,7 @@ AHEAD, BEHIND = 30.0, 15.0  # m before and behind the tested car where nobody is
 class IdmMover:
     """The flow of a scene. ``actors`` grows as vehicles come in."""
 
-    def __init__(self, stage: "Stage", flow: Flow | None = None, is_filled: bool = True) -> None:
+    def __init__(self, stage: Stage, flow: Flow | None = None, is_filled: bool = True) -> None:
         """Prepares the flow of the stage's scene, or another one; ``is_filled`` is whether it is there at
         the start."""
         self.actors: list[Actor] = []
@@ -114,7 +111,7 @@ class IdmMover:
         self._tick, self._step = 0, f.step
         self._goes_on = np.diff(self.lanes.onward_of) > 0
 
-    def start(self, car: "TestedCar | None", bodies: FloatArray = NOBODY) -> FloatArray:
+    def start(self, car: TestedCar | None, bodies: FloatArray = NOBODY) -> FloatArray:
         """Places the vehicles that are there at the start, and returns their states."""
         self._see(car)
         for n in range(len(self.ids)) if self._is_filled else ():
@@ -141,7 +138,7 @@ class IdmMover:
                 ahead, factor = s, self.enter(n, s, most, follows, factor)
         return self._shown()
 
-    def move(self, time: float, car: "TestedCar | None", bodies: FloatArray) -> FloatArray:
+    def move(self, time: float, car: TestedCar | None, bodies: FloatArray) -> FloatArray:
         """Returns the states of all actors, shape ``(actors, 5)``, STEP after ``time``."""
         self._see(car)
         lights = np.array([self.lights.shown(end, time) for end in self._ends])
@@ -185,7 +182,7 @@ class IdmMover:
         left = max(float(self.lanes.stop[lane]) - s - CLEAR, 0.0)
         return math.sqrt(2.0 * min(f.EASY, self._ease[lane]) * left) if self._goes_on[lane] else math.inf
 
-    def _see(self, car: "TestedCar | None") -> None:
+    def _see(self, car: TestedCar | None) -> None:
         """Enters the tested car into its row."""
         row, whole = self._numbers[f.TESTED], self._whole[f.TESTED]
         if car is None:
@@ -326,7 +323,7 @@ class IdmMover:
         return out
 
 
-def _friction(stage: "Stage", network: Network, lanes: LaneMap, ids: Sequence[Leg]) -> FloatArray:
+def _friction(stage: Stage, network: Network, lanes: LaneMap, ids: Sequence[Leg]) -> FloatArray:
     """Returns the friction of each sample of the lanes: on the tested car's roads that of its stations."""
     road, world = stage.road, stage.world
     found, begins = np.full(len(lanes.station), world.site.friction), dict[int, tuple[float, Leg]]()
@@ -342,7 +339,7 @@ def _friction(stage: "Stage", network: Network, lanes: LaneMap, ids: Sequence[Le
     return found
 
 
-def _is_close(car: "TestedCar", x: float, y: float, is_own: bool) -> bool:
+def _is_close(car: TestedCar, x: float, y: float, is_own: bool) -> bool:
     """Returns whether a place is too close to the tested car for somebody to be there at first, in a lane
     that it follows or in another one."""
     dx, dy = x - car.x, y - car.y
@@ -353,10 +350,8 @@ def _is_close(car: "TestedCar", x: float, y: float, is_own: bool) -> bool:
     return bool(-BEHIND - 2.0 * car.speed < along < near and math.hypot(dx, dy) < near)
 
 
-def _near(lanes: Lanes, road: "Road") -> frozenset[Leg] | None:
+def _near(lanes: Lanes, road: Road) -> frozenset[Leg] | None:
     """Returns the lanes that come within REACH of a road; None if all do."""
-    from scipy.spatial import cKDTree
-
     tree = cKDTree(road.at(np.linspace(0.0, road.length, max(2, int(road.length / 10.0))))[:, :2])
     found = set()
     for lane in lanes:
@@ -366,7 +361,7 @@ def _near(lanes: Lanes, road: "Road") -> frozenset[Leg] | None:
     return None if len(found) == len(lanes) else frozenset(found)
 
 
-def _path(road: "Road", legs: Sequence[Leg], ids: Sequence[Leg]) -> tuple[list[float], list[int]]:
+def _path(road: Road, legs: Sequence[Leg], ids: Sequence[Leg]) -> tuple[list[float], list[int]]:
     """Returns the lanes that the tested car follows, and the stations at which they begin; where it changes
     lanes on a road, that road's last lane."""
     starts, lanes = [0.0], []

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from roadgpt.compiled import compiled, inlined
 from roadgpt.network.lanes import Lane, Lanes
@@ -229,7 +230,6 @@ def _to_exits(
     length: FloatArray, beside: IntArray, onward: IntArray, ways_on: IntArray, ends: NDArray[np.bool_]
 ) -> tuple[IntArray, FloatArray]:
     """Returns the exits of a map, and how far each lane is from each of them."""
-    from scipy.sparse import csr_array
     from scipy.sparse.csgraph import dijkstra
 
     count, (lane, side) = len(length), np.nonzero(beside >= 0)

@@ -9,7 +9,6 @@ arm of a larger road."""
 import math
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,11 +18,9 @@ from roadgpt.geometry import wrap_angle
 from roadgpt.language.names import Shown
 from roadgpt.network import network_of
 from roadgpt.network.network import Arm, Junction, Network, RoadEnd
+from roadgpt.road import Road, World
 from roadgpt.traffic.following import GREEN, RED, YELLOW
 from roadgpt.traffic.maneuver import drawn
-
-if TYPE_CHECKING:
-    from roadgpt.road import Road, World
 
 GREEN_FOR, YELLOW_FOR, CLEARING = 15.0, 3.0, 2.0  # s
 PHASE = GREEN_FOR + YELLOW_FOR + CLEARING
@@ -107,7 +104,7 @@ def _runs(role: Role) -> bool:
     return any(each.what == "run_light" for each in role.actions)
 
 
-def lights_of(road: "Road", world: "World", seed: int) -> Lights:
+def lights_of(road: Road, world: World, seed: int) -> Lights:
     """Returns the lights that run in a drive. If the scene has actors, the tested car has green wherever it
     comes at its first speed, and so has who drives along with it or towards it. If somebody comes from the
     side and nobody runs a red light, that one has green, and the tested car red. What the first lights on its

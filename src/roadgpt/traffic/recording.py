@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import zip_longest
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import numpy as np
 from pydantic import BaseModel, Field, ValidationError
@@ -25,6 +25,7 @@ from roadgpt.errors import UsageError, advice_on
 from roadgpt.language.names import ActorKind
 from roadgpt.network import network_of
 from roadgpt.reading import read_bytes
+from roadgpt.road import Road, World
 from roadgpt.traffic.actor import (
     SIZES,
     SPEED,
@@ -38,9 +39,6 @@ from roadgpt.traffic.actor import (
     Z,
     rounded,
 )
-
-if TYPE_CHECKING:
-    from roadgpt.road import Road, World
 
 MOST_STATES = 2_000_000  # ten samples a second for each actor: 20 actors for almost three hours
 FOR_EVER = 1e7  # s, later than any moment of a recording
@@ -89,7 +87,7 @@ class Recording:
         """The last time in seconds at which anything is recorded."""
         return max(float(rows[rows[:, 0] < FOR_EVER, 0].max()) for rows in self.tracks)
 
-    def on(self, road: "Road", world: "World") -> Tracks:
+    def on(self, road: Road, world: World) -> Tracks:
         """Returns the tracks on a road, which gives the heights where the file has none."""
         time = STEP * np.arange(math.ceil(self.end / STEP - 1e-6) + 1)
         states = np.full((len(time), len(self.tracks), 5), np.nan)
@@ -103,7 +101,7 @@ class Recording:
         return Tracks(self.actors, rounded(states))
 
 
-def heights(road: "Road", world: "World", points: FloatArray) -> FloatArray:
+def heights(road: Road, world: World, points: FloatArray) -> FloatArray:
     """Returns the heights in metres of points ``(n, 2)`` on the road of the network whose centre line is
     nearest, as seen from above."""
     from scipy.spatial import cKDTree

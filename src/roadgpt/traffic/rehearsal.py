@@ -2,19 +2,15 @@
 of the scene, whatever is in its way. Only the others are simulated, which takes a few hundredths of a second,
 and the same seed gives the same result."""
 
-from typing import TYPE_CHECKING
-
+from roadgpt.road import Road, World
 from roadgpt.traffic import begin
 from roadgpt.traffic.actor import SIZES, Size
 from roadgpt.traffic.aiming import steady
 from roadgpt.traffic.traffic import Traffic
 
-if TYPE_CHECKING:
-    from roadgpt.road import Road, World
-
 
 def rehearsed(
-    road: "Road", world: "World", seed: int, size: Size = SIZES["car"], ahead: float = 0.0
+    road: Road, world: World, seed: int, size: Size = SIZES["car"], ahead: float = 0.0
 ) -> Traffic | None:
     """Returns the others after the rehearsal, who tell what happened; None if there are none. The middle of
     the tested car's box, of a ``size``, is ``ahead`` metres before its centre of gravity."""

@@ -5,7 +5,7 @@ import math
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,14 +20,12 @@ from roadgpt.network.lane_along import LONGEST, SHARE
 from roadgpt.network.lanes import HEADROOM, STRAIGHT_AHEAD, Lanes, lanes_of
 from roadgpt.network.line import SPACING, Line, driven_line
 from roadgpt.network.network import Leg
+from roadgpt.road import Road, World
 from roadgpt.road.road import GOAL
 from roadgpt.traffic.actor import SIZES, FloatArray
 from roadgpt.traffic.lane_map import LEAST
 from roadgpt.traffic.lights import Lights, comes_from_side
 from roadgpt.traffic.places import BESIDE, SIGN
-
-if TYPE_CHECKING:
-    from roadgpt.road import Road, World
 
 KERB = 1.1  # m, between the lanes and who stands before a crosswalk, to walk at its speed on it (CPNA)
 BEFORE, BEHIND = 5.0, 8.0  # m, from a junction to those who cross the road before and behind it
@@ -47,7 +45,7 @@ TURNS: Mapping[What, tuple[float, float, tuple[bool, ...]]] = {
 lane."""
 
 
-def way_of(role: Role, near: float, road: "Road", world: "World", away: float | None = None) -> Line:
+def way_of(role: Role, near: float, road: Road, world: World, away: float | None = None) -> Line:
     """Returns the way of somebody who crosses the tested car's path, comes to it along other lanes, or turns
     off. ``meets`` is where, at station ``near`` of the tested car's road or later. Who crosses is ``away``
     metres from the path at first; None: beside the lanes. Raises SceneError if the road has no such place."""
@@ -70,7 +68,7 @@ def way_of(role: Role, near: float, road: "Road", world: "World", away: float | 
     raise SceneError(f"the route passes no {lacks}; change one of them")
 
 
-def _across(role: Role, near: float, road: "Road", world: "World", away: float | None) -> Line:
+def _across(role: Role, near: float, road: Road, world: World, away: float | None) -> Line:
     """Returns the way straight across the road, at right angles to the tested car's path, or into its lane
     for who turns in."""
     s = near if role.where != "crosswalk" else _crosswalk(near, road, role.at is None)
@@ -105,7 +103,7 @@ def _across(role: Role, near: float, road: "Road", world: "World", away: float |
     return replace(way, meets=met)
 
 
-def _crosswalk(near: float, road: "Road", is_open: bool) -> float:
+def _crosswalk(near: float, road: Road, is_open: bool) -> float:
     """Returns the station of the first crosswalk from ``near`` on; where the place is left open, that behind
     a junction at which the tested car turns."""
     found = [each for each in road.crosswalks if each.s >= near]

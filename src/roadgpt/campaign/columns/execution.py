@@ -2,11 +2,10 @@
 
 from roadgpt.campaign.columns import ResultColumns
 from roadgpt.run import Run
+from roadgpt.run.execution import PER_POINT, features_of, records_of
 
 
 def _numbers(run: Run) -> dict[str, float]:
-    from roadgpt.run.execution import PER_POINT, features_of, records_of  # which tells of rows do not need
-
     assert run.road is not None
     records = records_of(run.road, run.drive, run.world) if run.drive is not None else []
     return features_of(run.road.centreline(PER_POINT), records)

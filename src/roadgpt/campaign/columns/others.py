@@ -11,6 +11,7 @@ and of one whose tested car is made to drift:
 DTLE          least distance from a front tyre to the edge of the lane, m; negative beyond it"""
 
 from roadgpt.campaign.columns import ResultColumns, Told
+from roadgpt.drive.lane_position import MarkingMonitor
 from roadgpt.run import Run
 
 COUNTED = {
@@ -24,8 +25,6 @@ def _numbers(run: Run) -> dict[str, float]:
     if run.drive is None or run.road is None or verdict is None:
         return out
     if any(action.what == "drift" for action in run.world.scene.actions):
-        from roadgpt.drive.lane_position import MarkingMonitor
-
         road = run.drive.followed(run.road, run.world)
         beyond = MarkingMonitor.for_tyres(road, run.world, run.drive.car).along(run.drive)
         out["DTLE"] = round(-float(beyond.max()), DECIMALS)

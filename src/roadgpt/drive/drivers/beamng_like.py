@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,11 +17,9 @@ from roadgpt.drive.driving_line import (
 )
 from roadgpt.drive.keeping_distance import KeepingDistance
 from roadgpt.drive.view import Command, View
+from roadgpt.road import Road, World
+from roadgpt.road.profile import Profile
 from roadgpt.road.speed_profile import DrivingLimits, plan_speed
-
-if TYPE_CHECKING:
-    from roadgpt.road import Road, World
-    from roadgpt.road.profile import Profile
 
 USUAL = 70 / 3.6  # m/s, the limit under which BeamNG's AI was recorded
 BRAKING = 0.9  # g; recordings of BeamNG's AI: 8.5 to 10.8 m/s^2
@@ -95,7 +92,7 @@ class BeamngLike:
     assumed_friction: float | None = 1.0
     wheelbase: float = 2.83
 
-    def start(self, road: "Road", world: "World", seed: int) -> None:
+    def start(self, road: Road, world: World, seed: int) -> None:
         """Plans the line and the speed for a road."""
         del seed  # the same road is driven the same way every time
         line = line_along(road, self.offsets(road, world))
@@ -110,7 +107,7 @@ class BeamngLike:
         self._speed = plan_speed(level, limits, highest_speeds(road, world, line, EASY_BRAKING))
         self._distance = KeepingDistance(line, road)
 
-    def bend(self, road: "Road", world: "World") -> FloatArray:
+    def bend(self, road: Road, world: World) -> FloatArray:
         """Returns the curvature of the lane's middle in 1/m at ``stations(road)``, shape ``(n,)``.
 
         The curvature is smoothed over 10 m, so that short bends vanish."""
@@ -119,7 +116,7 @@ class BeamngLike:
         stretch = np.maximum(1 - world.profile_of(road).middle(s) * bend, TIGHTEST)
         return smoothed(bend / stretch, float(s[1]), SMOOTHING)
 
-    def offsets(self, road: "Road", world: "World") -> FloatArray:
+    def offsets(self, road: Road, world: World) -> FloatArray:
         """Returns the offsets of the planned line at ``stations(road)``, shape ``(n,)``.
 
         They are in metres to the left of the road's centre line."""
@@ -131,7 +128,7 @@ class BeamngLike:
         kept = offset if self.edge_room is None else self._kept_on(profile, s, bend, offset)
         return kept_in_lane(road, world, s, kept, PURSUIT_CUTS * bend)
 
-    def _kept_on(self, profile: "Profile", s: FloatArray, bend: FloatArray, offset: FloatArray) -> FloatArray:
+    def _kept_on(self, profile: Profile, s: FloatArray, bend: FloatArray, offset: FloatArray) -> FloatArray:
         """Returns the offsets, moved away from edges of the carriageway that have no shoulder."""
         assert self.edge_room is not None
         room, edges, rims = HALF_TRACK + self.edge_room, profile.edges(s), profile.rims(s)

@@ -4,7 +4,6 @@ camera sees."""
 import math
 from collections import deque
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,10 +12,8 @@ from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.driving_line import lane_limits, line_along, pedals_for, stations
 from roadgpt.drive.keeping_distance import HARDEST, ROLLS, KeepingDistance, slowed
 from roadgpt.drive.view import Command, View
+from roadgpt.road import Road, World
 from roadgpt.road.speed_profile import GRAVITY
-
-if TYPE_CHECKING:
-    from roadgpt.road import Road, World
 
 EVERY = 2  # control steps from one image to the next: 25 images a second
 SPACING = 2.0  # m between the places at which the lane is looked at
@@ -104,7 +101,7 @@ class LaneCentring:
     drift: float = 5.0
     wheelbase: float = 2.83
 
-    def start(self, road: "Road", world: "World", seed: int) -> None:
+    def start(self, road: Road, world: World, seed: int) -> None:
         """Computes the middle of the lane, and forgets the last road."""
         self._by_person = [(way.start - TAKEN_OVER, way.end + GIVEN_BACK) for way in road.passages]
         square = world.first_speed**2

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from roadgpt.drive.driving_line import (
     highest_speeds,
@@ -13,10 +12,8 @@ from roadgpt.drive.driving_line import (
 )
 from roadgpt.drive.keeping_distance import KeepingDistance
 from roadgpt.drive.view import Command, View
+from roadgpt.road import Road, World
 from roadgpt.road.speed_profile import DrivingLimits, plan_speed
-
-if TYPE_CHECKING:
-    from roadgpt.road import Road, World
 
 
 @dataclass(eq=False)
@@ -39,7 +36,7 @@ class PurePursuit:
     nearest: float = 4.5
     wheelbase: float = 2.83
 
-    def start(self, road: "Road", world: "World", seed: int) -> None:
+    def start(self, road: Road, world: World, seed: int) -> None:
         """Plans the speed along the middle of the lane."""
         del seed  # the same road is driven the same way every time
         line = line_along(road, world.profile_of(road).middle(stations(road)))

@@ -3,15 +3,12 @@ feedback."""
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from roadgpt.drive.driving_line import highest_speeds, line_along, pedals, stations
 from roadgpt.drive.keeping_distance import KeepingDistance
 from roadgpt.drive.view import Command, View
+from roadgpt.road import Road, World
 from roadgpt.road.speed_profile import GRAVITY, DrivingLimits, plan_speed
-
-if TYPE_CHECKING:
-    from roadgpt.road import Road, World
 
 
 @dataclass(eq=False)
@@ -52,7 +49,7 @@ class Reference:
     headway: float = 0.25
     lag: float = 0.10
 
-    def start(self, road: "Road", world: "World", seed: int) -> None:
+    def start(self, road: Road, world: World, seed: int) -> None:
         """Plans the line and the speed for a road."""
         del seed  # the same road is driven the same way every time
         line = line_along(road, world.profile_of(road).middle(stations(road)))

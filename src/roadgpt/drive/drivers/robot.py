@@ -2,14 +2,11 @@
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.driving_line import pedals_for
 from roadgpt.drive.view import Command, View
-
-if TYPE_CHECKING:
-    from roadgpt.road import Road, World
+from roadgpt.road import Road, World
 
 GOES_ON = 0.5  # m/s^2, with which somebody else changes the speed
 NEAR = 0.5  # m and m/s; larger errors, as at a start from rest, are not summed up
@@ -41,7 +38,7 @@ class Robot(Reference):
     pull: float = 3.0
     drawn: float = 2.0
 
-    def start(self, road: "Road", world: "World", seed: int) -> None:
+    def start(self, road: Road, world: World, seed: int) -> None:
         """Plans the path and the speed for a road."""
         super().start(road, world, seed)
         line = self._line

@@ -7,7 +7,7 @@ import threading
 import weakref
 from contextlib import suppress
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, Any
 
 import numpy as np
 
@@ -17,9 +17,7 @@ from roadgpt.drive.loading import WRITTEN, absolute_spec, folder_of
 from roadgpt.drive.view import CameraSpec, Command, View
 from roadgpt.errors import DriverError, RoadGPTError, UsageError
 from roadgpt.reading import digest
-
-if TYPE_CHECKING:
-    from roadgpt.road import Road, World
+from roadgpt.road import Road, World
 
 MAKING = 30.0  # s for a new process to import what it needs, on top of the driver's own limit
 MOST_ANSWER = 1 << 24  # bytes
@@ -121,7 +119,7 @@ class IsolatedDriver:
             return _digests(self._process.spec, self._process.ask(BEFORE_START, ("files",)))
         return self.files
 
-    def start(self, road: "Road", world: "World", seed: int) -> None:
+    def start(self, road: Road, world: World, seed: int) -> None:
         """Sends the road to the driver and calls its ``start``."""
         self._show(road, world)
         self.files = _digests(self._process.spec, self._asked(BEFORE_START, 0.0, "start", seed)["files"])
@@ -140,7 +138,7 @@ class IsolatedDriver:
         self.handed_to = answer["handed_to"]
         return Command(*answer["command"])
 
-    def _show(self, road: "Road", world: "World") -> None:
+    def _show(self, road: Road, world: World) -> None:
         self._asked(BEFORE_START, 0.0, "show", road, world)
         self._road, self._world = road, world
 

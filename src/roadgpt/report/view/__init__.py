@@ -15,7 +15,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import shapely
 from PIL import Image
+from shapely.geometry.polygon import orient
 
 from roadgpt.brief import sentence
 from roadgpt.brief.junctions import NAMES
@@ -368,9 +370,6 @@ def network_values(route: Road, world: World) -> dict[str, Any]:
 
 
 def _area(area: JunctionSurface) -> dict[str, Any]:
-    import shapely
-    from shapely.geometry.polygon import orient
-
     has_ground = not area.shoulder.is_empty
     whole = shapely.union_all([area.paved, area.shoulder, *area.kerbed, *area.green])
     rims = [orient(shapely.Polygon(part.exterior)) for part in shapely.get_parts(whole)]
@@ -385,16 +384,12 @@ def _area(area: JunctionSurface) -> dict[str, Any]:
 
 
 def _triangles(area: Area) -> dict[str, Any]:
-    import shapely
-
     # corners that are rounded only later would turn thin triangles over
     points, corners = triangulated(shapely.set_precision(shapely.simplify(area, NEAR), 10.0**-MILLIMETRES))
     return {"points": rounded(points.reshape(-1), MILLIMETRES), "corners": corners.reshape(-1).tolist()}
 
 
 def _simple(stroke: PaintedStroke) -> Array:
-    import shapely
-
     if stroke.road is not None or len(stroke.points) < 3:
         return stroke.points
     flat = shapely.get_coordinates(shapely.simplify(shapely.LineString(stroke.points[:, :2]), NEAR))
@@ -406,8 +401,6 @@ def _points(points: Array) -> list[float]:
 
 
 def _rings(area: Area, tolerance: float = ROUGH) -> list[list[float]]:
-    import shapely
-
     rings = rings_of(shapely.simplify(area, tolerance))
     return [rounded(ring[:-1].reshape(-1), CENTIMETRES) for ring in rings]
 

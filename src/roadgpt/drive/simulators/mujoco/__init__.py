@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roadgpt.brief.junctions import RAMPS
+from roadgpt.drive import Driver
 from roadgpt.drive.camera_sensor import CameraSensor, camera_of
 from roadgpt.drive.drive import COLUMNS, SCRIPT, Box, Columns, Drive
 from roadgpt.drive.drive_monitor import DriveMonitor
@@ -20,11 +21,10 @@ from roadgpt.drive.outlook import Outlook
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Axle, Car, Tyre
 from roadgpt.drive.simulators.mujoco.vehicle import CONTROL, Vehicle, plane
 from roadgpt.drive.view import LightAhead, Other, View
+from roadgpt.road import Road, World
 from roadgpt.stopping import look
 
 if TYPE_CHECKING:
-    from roadgpt.drive import Driver
-    from roadgpt.road import Road, World
     from roadgpt.traffic import Traffic
 
 __all__ = ["ETK_LIKE", "Axle", "Car", "MujocoSimulator", "Tyre", "Vehicle", "plane"]
@@ -39,7 +39,7 @@ EASY = 3.0  # m/s^2, with which a car slows down for a bend, and that it takes s
 CALM = 2.0  # m/s^2, with which it stops before a junction
 
 
-def _first_speed(road: "Road", world: "World", start: float, box: Box) -> float:
+def _first_speed(road: Road, world: World, start: float, box: Box) -> float:
     """Returns the speed in m/s at which the car starts to roll. Where the scene does not say it, it is at
     most that from which the car slows down without effort for the bends behind ``start``, and stops before
     the first junction if it has no priority there."""
@@ -68,9 +68,9 @@ class MujocoSimulator:
 
     def simulate(
         self,
-        road: "Road",
-        world: "World",
-        driver: "Driver",
+        road: Road,
+        world: World,
+        driver: Driver,
         seed: int,
         keep_driving: bool = False,
         traffic: "Traffic | None" = None,

@@ -1,7 +1,7 @@
 """A car that can be moved step by step, on a road or on a plane."""
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -42,9 +42,7 @@ from roadgpt.drive.simulators.mujoco.dynamics import (
     normal_of,
     step_once,
 )
-
-if TYPE_CHECKING:
-    from roadgpt.road import Road, World
+from roadgpt.road import Road, World
 
 SETTLED = 2e-4  # m/s and rad/s, below which all parts count as at rest
 LONGEST_SETTLING = 150  # control steps
@@ -105,7 +103,7 @@ class Vehicle:
         self.mishap = state["mishap"]
 
     @classmethod
-    def on(cls, road: "Road", world: "World", car: Car = ETK_LIKE) -> "Vehicle":
+    def on(cls, road: Road, world: World, car: Car = ETK_LIKE) -> "Vehicle":
         """Returns a car on a road, with the road's lanes and shoulders and the world's friction."""
         sampled, profile = sample_road(road), world.profile_of(road)
         rims = np.column_stack(profile.rims(stations_of(sampled)))
@@ -196,7 +194,7 @@ class Vehicle:
         return np.column_stack([along, left, up])
 
 
-def _land(road: "Road", world: "World") -> LandGrid:
+def _land(road: Road, world: World) -> LandGrid:
     from roadgpt.network.landscape import crossings, ground_around  # only drives over land load it
 
     ground = ground_around(road, world)
