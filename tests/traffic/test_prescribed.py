@@ -51,6 +51,47 @@ def test_what_the_test_robot_drives_is_what_is_prescribed(name: str) -> None:
     assert not _wrong(name, Measured(_run(name)))
 
 
+def _of_grid(name: str, parameter: str) -> set[float]:
+    return {float(each.values[parameter]) for each in scenario(name).points("standard", True)}
+
+
+def test_grids_have_the_speeds_of_the_texts_of_un_r152() -> None:
+    assert _of_grid("r152:stationary_car", "ego") == {20, 42, 60}  # 6.4, category M1, mass in running order
+    assert _of_grid("r152:moving_car", "ego") == {30, 60}  # 6.5
+    assert _of_grid("r152:moving_car", "target") == {20}
+    assert _of_grid("r152:pedestrian", "ego") <= {20, 25, 30, 35, 40, 42, 45, 50, 55, 60}  # 5.2.2.4
+    assert _of_grid("r152:pedestrian", "target") == {5}
+    assert _of_grid("r152:bicycle", "ego") <= {20, 25, 30, 35, 38, 40, 45, 50, 55, 60}  # 5.2.3.4
+    assert _of_grid("r152:bicycle", "target") == {15}
+
+
+def test_headways_are_the_least_ones_of_un_r157() -> None:
+    speeds, gaps = (7.2, 10, 20, 30, 40, 50, 60), (1.0, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6)  # 5.2.3.3, M1
+    for each in scenario("r157:follow_lead_vehicle_emergency_brake").points("standard", True):
+        assert float(each.values["headway"]) == pytest.approx(
+            np.interp(float(each.values["ego"]), speeds, gaps)
+        )
+
+
+def test_bends_and_lane_changes_ask_for_what_un_r79_says() -> None:
+    """Annex 8: 80 to 90 % of the greatest lateral acceleration in 3.2.1, over 0.3 m/s2 more in 3.2.2, where
+    3 m/s2 are the greatest of category M1 (5.6.2.1.3); 55 m behind (5.6.4.8.1), 5 s (5.6.4.6.5)."""
+    for name, least, most in (
+        ("B1_lane_keeping", 0.8 * 3, 0.9 * 3),
+        ("B1_most_lateral_acceleration", 3.3, 9),
+    ):
+        for each in scenario(f"r79:{name}").points("standard", True):
+            road = _run(str(each), drives=False).road
+            assert road is not None
+            s = np.arange(START, road.length - GOAL, 0.25)
+            steps = np.diff(road.at(s, WORLD.profile_of(road).middle(s))[:, :2], axis=0)
+            turned = np.abs(np.diff(np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))))
+            curvature = np.median((turned / np.hypot(*steps[1:].T))[turned > 1e-4])
+            assert least < (float(each.values["ego"]) / 3.6) ** 2 * curvature < most
+    assert min(_of_grid("r79:C_rear_vehicle", "distance")) >= 55
+    assert max(_of_grid("r79:C_lane_change", "lasts")) <= 5
+
+
 def _wrong(name: str, measured: Measured) -> dict[tuple[int, str], tuple[float, Row]]:
     found = {
         (row.who, row.what): (getattr(measured, row.what)(row.who, row.want), row) for row in BY_POINT[name]
