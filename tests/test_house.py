@@ -36,7 +36,8 @@ FEW = {
     "roadgpt_sbft": 58,
 }  # names of roadgpt that each may import
 HALLWAY = {
-    "compiled", "errors", "plugins", "plural", "provenance", "reading", "settings", "children", "stopping",
+    "compiled", "errors", "later", "plugins", "plural", "provenance", "reading", "settings", "children",
+    "stopping",
 }  # fmt: skip
 TELLING = (
     "import atexit, sys; from roadgpt.cli import main; "

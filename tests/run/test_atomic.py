@@ -14,7 +14,6 @@ from roadgpt.run.atomic import (
     LOCK,
     alone_in,
     csv_text,
-    is_locked,
     json_text,
     sweep,
     whole_folder,
@@ -119,11 +118,10 @@ def test_a_failure_under_the_lock_is_what_is_told(tmp_path: Path, monkeypatch: p
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no such locks")
 def test_others_see_that_somebody_is_at_work(tmp_path: Path) -> None:
-    assert not is_locked(tmp_path)
+    with alone_in(tmp_path), pytest.raises(UsageError, match="another process"), alone_in(tmp_path):
+        pass
     with alone_in(tmp_path):
-        assert is_locked(tmp_path)
-    assert not is_locked(tmp_path)
-    assert [path.name for path in tmp_path.iterdir()] == [LOCK]  # looking makes no file
+        assert [path.name for path in tmp_path.iterdir()] == [LOCK]
 
 
 def test_lines_are_written_whole_or_not_at_all(tmp_path: Path) -> None:

@@ -12,12 +12,13 @@ it resumes the campaign. ``status_of`` returns the progress. For one test, ``kep
 Run, with its drive, and ``run_again`` drives the road again."""
 
 import sys
-from importlib import import_module
 from types import ModuleType
 from typing import Any
 
+from roadgpt.later import load, names_of
+
 # Each module is imported when it is first used, because a starting worker needs none of them yet.
-_MODULES = {
+_OFFERED = {
     "folder_record": "kept_run run_again",
     "lifecycle": "begin work",
     "model": "Cell CellBudget Generator Goal Pool Proposal Result",
@@ -26,15 +27,11 @@ _MODULES = {
     "run_folder": "Campaign campaign",
     "status": "status_of",
 }
-
-__all__ = sorted(name for names in _MODULES.values() for name in names.split())
+__all__ = names_of(_OFFERED)
 
 
 def __getattr__(name: str) -> Any:
-    module = next((module for module, names in _MODULES.items() if name in names.split()), None)
-    if module is None:
-        raise AttributeError(f"roadgpt.campaign has no '{name}'; it offers {', '.join(__all__)}")
-    return getattr(import_module(f"roadgpt.campaign.{module}"), name)
+    return load(__name__, _OFFERED, name)
 
 
 class _Room(ModuleType):

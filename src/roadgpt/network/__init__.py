@@ -8,9 +8,9 @@ roundabouts.
 Most roads lead through no junctions. The functions of ``road_or_route``, which are used for all roads, are
 loaded at once. The modules that build and describe networks are loaded when a name in them is first used."""
 
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from roadgpt.later import load, names_of
 from roadgpt.network.road_or_route import (
     is_route,
     legs_of,
@@ -40,48 +40,17 @@ if TYPE_CHECKING:
     from roadgpt.network.route import Passage, Route
     from roadgpt.network.source import read_road, read_source
 
-__all__ = [
-    "Arm",
-    "Connection",
-    "Continuation",
-    "ImportedMap",
-    "ImportedRoad",
-    "Junction",
-    "LaneLink",
-    "Leg",
-    "Network",
-    "NetworkRoad",
-    "Passage",
-    "RoadEnd",
-    "Roundabout",
-    "Route",
-    "build_route",
-    "is_route",
-    "legs_of",
-    "made_from",
-    "network_of",
-    "only_road",
-    "read_map",
-    "read_opendrive",
-    "read_road",
-    "read_source",
-    "refuse_other_lane",
-    "refuse_without_route",
-    "road_from_json",
-]
-
-_LATER = {
+_OFFERED = {
     "growing": "build_route",
     "maps": "ImportedMap ImportedRoad read_map read_opendrive",
     "network": "Arm Connection Continuation Junction LaneLink Leg Network NetworkRoad RoadEnd Roundabout",
+    "road_or_route": "is_route legs_of made_from network_of only_road refuse_other_lane "
+    "refuse_without_route road_from_json",
     "route": "Passage Route",
     "source": "read_road read_source",
 }
-"""The names that are loaded when they are first used, by the module that defines them."""
+__all__ = names_of(_OFFERED)
 
 
 def __getattr__(name: str) -> Any:
-    for module, names in _LATER.items():
-        if name in names.split():
-            return getattr(import_module(f"roadgpt.network.{module}"), name)
-    raise AttributeError(f"roadgpt.network has no '{name}'; it offers {', '.join(__all__)}")
+    return load(__name__, _OFFERED, name)

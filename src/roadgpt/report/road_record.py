@@ -23,7 +23,6 @@ from roadgpt.geometry.curve import Array
 from roadgpt.report.canvas import FORMATS
 from roadgpt.report.similarity import Likeness, Spread, likeness, spread
 from roadgpt.road import Road, World
-from roadgpt.run import Run
 from roadgpt.run.folder import is_run
 from roadgpt.run.versions import Versions
 from roadgpt.verdict.verdict import DEPARTURES
@@ -177,7 +176,7 @@ def _road_of(
     road, request = record.road(cell, result) or (None, cell.request)
     href = under(home, file_of(record.folder, cell.name, result.number))
     brief = cell.of_test(result.proposal).brief
-    kept = _kept(road, brief, request.world, truth)
+    kept = kept_of(road, brief, request.world, truth)
     if road is None:
         return RoadRecord(result, None, False, False, "no road", np.empty((0, 2)), kept, None, href, None)
     is_checked = result.outcome == "INVALID" or brief is None  # others were driven because they break no rule
@@ -195,16 +194,12 @@ def _road_of(
     )  # fmt: skip
 
 
-def kept_of(run: Run, truth: Truth | None = None) -> dict[KeptCriterion, bool]:
-    """Returns, for each criterion of a description, whether the road of a run meets it; every value is False
-    if no road was made. ``truth`` contains the requirements; if ``truth`` is None, the requirements that the
-    reader found are used. Without any requirements, the result is empty."""
-    return _kept(run.road, run.brief, run.world, truth)
-
-
-def _kept(
-    road: Road | None, brief: Brief | None, world: World, truth: Truth | None
+def kept_of(
+    road: Road | None, brief: Brief | None, world: World, truth: Truth | None = None
 ) -> dict[KeptCriterion, bool]:
+    """Returns, for each criterion of a description, whether a road meets it; every value is False if no road
+    was made. ``truth`` contains the requirements; if ``truth`` is None, those that the reader found, in the
+    ``brief``, are used. Without any requirements, the result is empty."""
     points = road.centreline() if road is not None else STRAIGHT
     is_road = road is not None and bool(np.isfinite(points).all()) and len(points) > 1
     points = points if is_road else STRAIGHT

@@ -4,8 +4,9 @@ A Design is a human-readable list of segments, written by a designer plug-in. A 
 method ``road.at(s, t)`` returns a point: the station ``s`` is the distance along the centre line, and the
 offset ``t`` is the distance from the centre line, positive to the left."""
 
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
+
+from roadgpt.later import load, names_of
 
 if TYPE_CHECKING:
     from roadgpt.road.builder import build, in_short_segments
@@ -14,36 +15,15 @@ if TYPE_CHECKING:
     from roadgpt.road.road import Road, Samples
     from roadgpt.road.world import ORACLES, CrossSection, Geometry, Limits, Site, World
 
-__all__ = [
-    "ORACLES",
-    "CrossSection",
-    "Design",
-    "Edges",
-    "Geometry",
-    "Limits",
-    "Profile",
-    "Road",
-    "Samples",
-    "Segment",
-    "Site",
-    "World",
-    "build",
-    "in_short_segments",
-    "read_design",
-]
-
-
-_MODULES = {
+_OFFERED = {
     "builder": "build in_short_segments",
     "design": "Design Segment read_design",
     "profile": "Edges Profile",
     "road": "Road Samples",
     "world": "ORACLES CrossSection Geometry Limits Site World",
 }
+__all__ = names_of(_OFFERED)
 
 
 def __getattr__(name: str) -> Any:
-    module = next((module for module, names in _MODULES.items() if name in names.split()), None)
-    if module is None:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"roadgpt.road.{module}"), name)
+    return load(__name__, _OFFERED, name)

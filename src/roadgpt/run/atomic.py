@@ -97,19 +97,6 @@ def alone_in(folder: Path) -> Iterator[None]:
         yield
 
 
-def is_locked(folder: Path) -> bool:
-    """Returns whether a process holds the lock of a folder; always False on Windows."""
-    try:
-        with (folder / LOCK).open() as file:
-            if fcntl is not None:
-                fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return True
-    except OSError:
-        pass
-    return False
-
-
 @contextmanager
 def whole_folder(path: Path) -> Iterator[Path]:
     """Yields a temporary folder; renames it to ``path`` when the block succeeds, and removes it otherwise."""

@@ -69,10 +69,6 @@ class Lights:
             return RED
         return GREEN if since < GREEN_FOR else YELLOW
 
-    def show_green(self, junction: Junction, end: RoadEnd, time: float) -> None:
-        """Moves the cycle of a junction so that one of its arms is in the middle of its green at a time."""
-        self.show(junction, end, time, GREEN_FOR / 2)
-
     def show(self, junction: Junction, end: RoadEnd, time: float, since: float) -> None:
         """Moves the cycle of a junction so that one of its arms has begun its green so many seconds before a
         time."""
@@ -118,7 +114,7 @@ def lights_of(road: Road, world: World, seed: int) -> Lights:
             own = lights.phases[passage.arrival]
             others = [each for each in passage.arms if lights.phases.get(each, own) != own]
             end = others[0] if crosses and others else passage.arrival
-            lights.show_green(passage.entered, end, passage.start / speed)
+            lights.show(passage.entered, end, passage.start / speed, GREEN_FOR / 2)
     lit = next((each for each in road.passages if each.control == "lights"), None)
     if signal is not None and lit is not None:
         comes = (lit.start - world.start_on(road)) / speed

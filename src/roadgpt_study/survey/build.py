@@ -252,7 +252,7 @@ def match_scores(run: Run, prompt: str) -> dict[str, float]:
     the description ``prompt``."""
     if run.road is None or run.brief is None or prompt != run.words.strip():
         return {}
-    kept = {str(name): good for name, good in kept_of(run).items()}
+    kept = {str(name): good for name, good in kept_of(run.road, run.brief, run.world).items()}
     return {ours: float(kept[measured]) for ours, measured in MATCH.items() if measured in kept}
 
 
