@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 
 from roadgpt.brief import read
 from roadgpt.brief.amount import at_most, between, exactly
+from roadgpt.brief.beside import remarks
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import plan, read_plan, read_scene, scene_plan
 from roadgpt.brief.readers.chat import RULES
-from roadgpt.brief.scene import Action, Lie, Role, Scene, scene_text
+from roadgpt.brief.scene import Action, Lie, Role, Scene, scene_text, with_named
 from roadgpt.brief.sentence import sentence
 from roadgpt.errors import BriefError
 from roadgpt.language.names import ActorKind, Landform, Surface
@@ -56,6 +57,11 @@ def test_a_scene_is_said_in_plain_words(scene: Scene) -> None:
         ("ego lane=-2", "the tested car starts in lane 2 from the inside"),
         ("parked left; parked right", "cars parked on both sides"),
         ("parked right; wet", "cars parked on the right; on a wet road"),
+        ("roadworks len=80", "roadworks that narrow a lane on 80 metres"),
+        (
+            "roadworks closed left s=90..120 len=50",
+            "roadworks that close a lane on the left at 90 to 120 metres from the start on 50 metres",
+        ),
         ("low_sun; mountain", "a low sun ahead; mountain land"),
     ],
 )
@@ -198,3 +204,13 @@ def test_rain_wets_the_road_and_a_surface_goes_before_it() -> None:
     }
     for more, friction in lines.items():
         assert read_plan(f"turn {more}").friction == friction
+
+
+def test_words_beside_the_road_ask_for_roadworks_unless_the_scene_has_some():
+    named = with_named(read_scene("night"), ["roadworks", "bridge"])
+    assert scene_plan(named) == "night; roadworks narrowed len=50; bridge"
+    own = read_scene("roadworks closed s=90 len=50")
+    assert with_named(own, ["roadworks"]) == own
+    assert [*remarks(["roadworks"])] == [
+        "a construction site: the road gets roadworks that narrow a lane on 50 metres"
+    ]

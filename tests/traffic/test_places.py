@@ -18,7 +18,7 @@ from roadgpt.run import Setup, perform
 from roadgpt.traffic import begin
 from roadgpt.traffic.actor import SIZES
 from roadgpt.traffic.lights import GREEN, RED
-from roadgpt.traffic.places import offset_of, parked_rows
+from roadgpt.traffic.places import offset_of, parked_rows, works_rows
 from roadgpt.traffic.ways import way_of
 
 CROSSROADS = "straight 150 // crossroads straight none angle=90 // straight 150"
@@ -307,3 +307,85 @@ def test_who_drives_along_with_the_tested_car_has_green_too():
         opposite = passage.arms[2]
         for end in (passage.arrival, opposite):
             assert traffic.lights.shown(end, passage.start / 10.0) == GREEN
+
+
+FOOT, MILE = 0.3048, 1609.344
+TAPERS = {20: 80, 30: 180, 40: 320, 45: 540, 55: 660, 65: 780}
+"""MUTCD 2012 of California, table 6H-4(CA): mph, and feet of a merging taper for 12 feet."""
+
+
+@pytest.mark.parametrize(("mph", "feet"), TAPERS.items())
+@pytest.mark.parametrize(("kind", "share"), [("closed", 1), ("narrowed", 1 / 2), ("shoulder", 1 / 3)])
+def test_tapers_of_roadworks_are_as_long_as_published(mph, feet, kind, share):
+    works = read_scene(f"roadworks {kind}").roadworks[0]
+    first, full, *_ = works.stations(10.0, 50.0, 12 * FOOT, mph * MILE / 3600)
+    assert full - first == pytest.approx(feet * share * FOOT, rel=0.02)
+
+
+@pytest.mark.parametrize("hand", ["", " left_hand"])
+@pytest.mark.parametrize(
+    ("lanes", "works", "inside", "depth"),
+    [
+        ("lanes=2 against=2", "closed", 0, 3.5), ("lanes=2 against=2", "closed inner", 1, 3.5),
+        ("lanes=1 against=1", "closed inner", -1, 3.5), ("lanes=1 against=1", "", 0, 0.4),
+        ("lanes=3 against=1", "narrowed inner shift=1", 2, 1.0), ("lanes=2 against=2", "shoulder", None, 0.0),
+    ],
+)  # fmt: skip
+def test_cones_close_or_narrow_the_lane_on_their_side_and_no_other(lanes, works, inside, depth, hand):
+    """``inside``: the number of the lane from the kerb, -1 for the outermost oncoming one."""
+    road, world, every = made(
+        f"straight 50 // t_junction straight // straight 450 | {lanes} || width=3.5{hand}"
+    )
+    sides = ["left", "right"] if hand else ["right", "left"]
+    scene = f"roadworks {works} s=120 len=60".replace("inner", sides[1])
+    rows = works_rows(road, world.changed(scene=scene, speed_limit=50 / 3.6), 1)
+    boxes = [shapely.Polygon(corners(state[:2], state[3], np.array(SIZES[kind]))) for kind, state in rows]
+    s, t = np.array([road.locate(*state[:2]) for kind, state in rows if kind == "cones"]).T
+    section = shapely.LineString(road.at(np.array([200.0, 200.0]), np.array([-12.0, 12.0]))[:, :2])
+    middle = [each for each in every if each.area.intersection(section).length > 3.0]
+    middle.sort(key=lambda each: section.project(each.area.intersection(section).centroid))
+    middle = middle[::-1] if hand else middle  # from the kerb of the tested car
+    hit = [
+        n for n, each in enumerate(middle) if any(each.area.intersection(box).area > 1e-3 for box in boxes)
+    ]
+    assert hit == ([] if inside is None else [inside % len(middle)])
+    assert max(np.diff(np.sort(s))) < 2 * 50_000 / MILE * FOOT + 0.1
+    full = np.abs(t - t[len(t) // 2]) < 0.01
+    assert np.ptp(s[full]) == pytest.approx(60.0, abs=0.5)
+    for n in hit:
+        cones = [box for box, is_full in zip(boxes, full, strict=False) if is_full]
+        off = [abs(middle[n].locate(*np.array(box.centroid.coords[0]))[1]) for box in cones]
+        assert off == pytest.approx([abs(1.75 - depth + 0.2)] * len(off), abs=0.02)
+
+
+def test_traffic_leaves_the_lane_that_roadworks_close_and_touches_nothing_there():
+    road, world, _ = made("straight 400 | lanes=2 against=1")
+    world = world.changed(scene="medium; roadworks closed s=150 len=40", speed_limit=50 / 3.6)
+    flow = begin(road, world, 2)._movers[1][0]
+    rows = works_rows(road, world, 2)
+    bodies = np.array([[*state, *SIZES[kind][:2]] for kind, state in rows])
+    flow.start(None, bodies)
+    boxes = shapely.STRtree([shapely.Polygon(corners(b[:2], b[3], b[5:])) for b in bodies])
+    passed = set()
+    for step in range(1200):
+        states = flow.move(step * 0.1, None, bodies)
+        for n in np.flatnonzero(~np.isnan(states[:, 0])) if step % 5 == 0 else ():
+            size = np.array(flow.actors[n].size)
+            box = shapely.Polygon(corners(states[n, :2], states[n, 3], size))
+            assert not len(boxes.query(box, predicate="intersects"))
+            s, t = map(float, road.locate(*states[n, :2]))
+            passed |= {n} if s > 300.0 and t < 0 else set()
+    assert len(passed) > 20
+
+
+@pytest.mark.parametrize(
+    ("works", "says"),
+    [
+        ("roadworks s=380 len=50", "the road ends at"), ("roadworks shoulder", "has no such shoulder"),
+    ],
+)  # fmt: skip
+def test_roadworks_for_which_a_road_has_no_place_are_refused(works, says):
+    road, world, _ = made("straight 400 | lanes=1 against=1")
+    bare = world.changed(shoulder=0.0, scene=works)
+    with pytest.raises(UsageError, match=says):
+        works_rows(road, bare, 1)

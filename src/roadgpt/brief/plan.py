@@ -47,6 +47,7 @@ from roadgpt.brief.scene import (
     Lie,
     Mark,
     Person,
+    Roadworks,
     Role,
     Scene,
     Signal,
@@ -69,6 +70,7 @@ from roadgpt.language.table import (
     PARTS,
     PLACES,
     ROAD_USERS,
+    ROADWORKS,
     SCENES,
     SURFACES,
     WEATHER,
@@ -213,6 +215,8 @@ SIGNAL = "lights"
 A_SIGNAL = language(_of_scene(Signal, NUMBERS, shows=tuple(SCENES["signals"]["rows"])), "state of lights")
 SLIPPERY = "slippery"
 A_PATCH = language(_of_scene(SlipperyPlace, SlipperyPlace.model_fields), "slippery place")
+WORKS = "roadworks"
+A_SITE = language(_of_scene(Roadworks, Roadworks.model_fields, kind=tuple(ROADWORKS), side=SIDES), WORKS)
 CLOCK = "clock"
 CONDITIONS: Mapping[str, tuple[str, str]] = {
     str(word): (field, str(word))
@@ -499,6 +503,7 @@ def scene_plan(scene: Scene) -> str:
     line += [f"parked {side}" for side in scene.parked]
     line += [f"{air.kind} {amount_text(air.amount)}" for air in scene.weather]
     patches = [" ".join([SLIPPERY, *written(patch, A_PATCH)]) for patch in scene.slippery]
+    patches += [" ".join([WORKS, *written(each, A_SITE)]) for each in scene.roadworks]
     lands = [" ".join([each.kind, *written(each, A_LAND)]) for each in scene.landscape]
     clock = f"{CLOCK} {scene.clock}" if scene.clock else ""
     return "; ".join(filter(None, [*line, clock, scene.light, scene.surface, *patches, scene.land, *lands]))
@@ -523,7 +528,7 @@ def scene_fields(text: str) -> dict[str, object]:
     """Returns the fields of the scene that stands in a plan, which are not yet checked against each other."""
     fields: dict[str, object] = {}
     several: dict[str, list[Any]] = {
-        name: [] for name in ("actors", "actions", "slippery", "landscape", "parked")
+        name: [] for name in ("actors", "actions", "slippery", "roadworks", "landscape", "parked")
     }
     airs = dict[str, Air]()
     for part in filter(None, map(str.strip, text.split(";"))):
@@ -547,6 +552,8 @@ def scene_fields(text: str) -> dict[str, object]:
             _set(fields, "signal", _made(Signal, _read_words({}, words, A_SIGNAL), part))
         elif first == SLIPPERY:
             several["slippery"].append(_made(SlipperyPlace, _read_words({}, words, A_PATCH), part))
+        elif first == WORKS:
+            several[WORKS].append(_made(Roadworks, _read_words({}, words, A_SITE), part))
         elif first in LANDFORMS:
             several["landscape"].append(_made(Land, _read_words({"kind": first}, words, A_LAND), part))
         elif first in WEATHER and len(words) < 2:
@@ -560,7 +567,7 @@ def scene_fields(text: str) -> dict[str, object]:
         elif first in CONDITIONS and not words:
             _set(fields, *CONDITIONS[first])
         else:
-            known = (*ROAD_USERS, TESTED_CAR, SIGNAL, "oncoming", "parked", SLIPPERY, *WEATHER, CLOCK)
+            known = (*ROAD_USERS, TESTED_CAR, SIGNAL, "oncoming", "parked", SLIPPERY, WORKS, *WEATHER, CLOCK)
             known += (*CONDITIONS, *LANDFORMS)
             raise BriefError(
                 f"a scene has no '{part[:40]}'; its parts, divided by ;, begin with one of {', '.join(known)}"

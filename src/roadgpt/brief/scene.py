@@ -25,6 +25,7 @@ from roadgpt.language.names import (
     WeatherKind,
     What,
     Where,
+    Works,
 )
 from roadgpt.language.table import (
     CUES,
@@ -36,6 +37,7 @@ from roadgpt.language.table import (
     NUMBERS,
     OF_ITSELF,
     PLACES,
+    ROADWORKS,
     SCENES,
     SIZES,
     SURFACES,
@@ -64,6 +66,7 @@ MOST_MORE = 3
 CAR, SIGNALS = "tested car", "lights"
 """Whose events are not those of an actor."""
 LANES_AWAY = {"lane": 1, "far": 2}
+LEADS_BACK = 15.24  # m, on which the cones of roadworks lead back: 50 ft at least (MUTCD, table 6C-3)
 NARROW = 1.2  # m, the width of what has no doors
 MIRROR = "mirror"
 STRUCK: tuple[str, ...] = (*get_args(Face), MIRROR)
@@ -283,6 +286,33 @@ class SlipperyPlace(Frozen):
         return " ".join(["a slippery place", *_said(self)])
 
 
+class Roadworks(Frozen):
+    """Roadworks in or beside a lane of the road, with cones. ``shift`` is how many metres they take."""
+
+    kind: Works = "narrowed"
+    side: Side | None = None
+    station: Amount | None = None
+    """Where the cones begin, of which ``length`` metres are no taper; None: 4 s from the tested car."""
+    length: Amount = exactly(50)
+    shift: Amount | None = None
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        _given(self, "roadworks")
+        return self
+
+    def __str__(self) -> str:
+        side = [f"on the {self.side}"] if self.side else []
+        return " ".join([ROADWORKS[self.kind].said, *side, *_said(self)])
+
+    def stations(self, first: float, length: float, aside: float, limit: float) -> list[float]:
+        """Returns where the cones that lead so far aside begin, have done so, lead back, and end, in metres;
+        ``limit`` is in m/s."""
+        kmh = limit * 3.6  # 40 mph is 64.4
+        taper = ROADWORKS[self.kind].taper * aside * (kmh**2 / 155 if kmh < 65.0 else kmh / 1.609)
+        return [first, first + taper, first + taper + length, first + taper + length + LEADS_BACK]
+
+
 class Land(Frozen):
     """Something of the landscape that the road lies in, or several alike."""
 
@@ -385,6 +415,7 @@ class Scene(Frozen):
     """Night, or a sun that is low ahead of the tested car at its start; None: day."""
     surface: Surface | None = None
     slippery: tuple[SlipperyPlace, ...] = ()
+    roadworks: tuple[Roadworks, ...] = ()
     land: LandKind | None = None
     """How high the hills of the land are; None: as ``hills`` says."""
     landscape: tuple[Land, ...] = ()
@@ -527,7 +558,7 @@ class Scene(Frozen):
     @property
     def has_others(self) -> bool:
         """Whether somebody or something else is on the road, or lights run there."""
-        return self.has_flow or bool(self.actors or self.parked or self.lights)
+        return self.has_flow or bool(self.actors or self.parked or self.roadworks or self.lights)
 
     @property
     def lanes_beside(self) -> dict[str, int]:
@@ -659,23 +690,26 @@ def scene_text(scene: Scene) -> str:
     return "; ".join(parts_said(scene))
 
 
-LANDS: Mapping[str, Land] = {
+LANDS: Mapping[str, Land | Roadworks] = {
     "water": Land(kind="lake", lie="along"),
     "trees": Land(kind="forest", lie="through"),
     "bridge": Land(kind="bridge"),
     "tunnel": Land(kind="tunnel"),
+    "roadworks": Roadworks(),
 }
-"""The landscape that names in ``Brief.beside`` mean."""
+"""The landscape, and the roadworks, that names in ``Brief.beside`` mean."""
 
 
 def with_named(scene: Scene, beside: Sequence[str]) -> Scene:
-    """Returns a scene with the landscape and the weather that the names in ``Brief.beside`` mean, if it has
+    """Returns a scene with the land, roadworks and weather that names in ``Brief.beside`` mean, if it has
     none itself."""
     for kind in WEATHER:
         if kind in beside and not scene.amount_of(kind):
             scene = scene.with_weather(kind, usual_weather(kind).amount)
-    lands = tuple(LANDS[name] for name in beside if name in LANDS)
-    return scene if scene.landscape or not lands else scene.model_copy(update={"landscape": lands})
+    named = [LANDS[name] for name in beside if name in LANDS]
+    lands = scene.landscape or tuple(each for each in named if isinstance(each, Land))
+    works = scene.roadworks or tuple(each for each in named if isinstance(each, Roadworks))
+    return scene.model_copy(update={"landscape": lands, "roadworks": works})
 
 
 def land_remark(scene: Scene) -> str:

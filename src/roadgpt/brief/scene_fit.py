@@ -48,7 +48,7 @@ def fitted(brief: Brief, scene: Scene, limit: float, map_size: float | None = No
     check_scene(scene, brief)
     needs = (
         scene.actors, scene.actions, scene.has_flow, scene.speed, scene.lane, scene.slippery, scene.turn,
-        scene.signal,
+        scene.signal, scene.roadworks,
     )  # fmt: skip
     if brief.map is not None or not any(needs):
         return brief
@@ -103,6 +103,9 @@ def _until_stop(scene: Scene, speed: float, brief: Brief) -> float:
     named = [role.station for role in roles] + [each.station for role in roles for each in role.actions]
     named += [each.station or each.distance for each in scene.actions]
     named += [each.station for each in scene.slippery]
+    for each in scene.roadworks:
+        first = _most(each.station) or ROLLS * speed
+        seconds.append(each.stations(first, _most(each.length), LANE, speed)[-1] / max(speed, 1.0))
     named += [role.gap for role in roles if role.where == "oncoming"]
     longest = max(_length(road).hi for road in brief.stretches or (brief,))
     least = FOR_FLOW if scene.has_flow and longest > FOR_FLOW + SPARE + speed**2 / 2 / STOPS else 0.0

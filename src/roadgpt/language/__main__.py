@@ -14,7 +14,7 @@ TYPES = {
     "IslandSize": ("roads", "islands"), "Take": ("roads", "takes"), "Side": ("roads", "sides"),
     "Way": ("roads", "ways"), "Surroundings": ("roads", "surroundings"), "CentreLine": ("roads", "centres"),
     "Compass": ("roads", "compass"), "Shown": ("scenes", "signals"),
-    "Face": ("scenes", "faces"),
+    "Face": ("scenes", "faces"), "Works": ("scenes", "roadworks"),
 }  # fmt: skip
 """The types of names, and the file and the part whose rows have them."""
 OF_JUNCTIONS = {

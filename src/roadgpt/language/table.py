@@ -18,6 +18,7 @@ from roadgpt.language.names import (
     WeatherKind,
     What,
     Where,
+    Works,
 )
 from roadgpt.reading import read_text
 
@@ -181,6 +182,15 @@ class Part(NamedTuple):
     token: bool = True
 
 
+class WorksRow(NamedTuple):
+    """Roadworks; ``scenes.toml`` explains the fields."""
+
+    said: str
+    taper: float
+    inside: Sequence[ActorKind] = ()
+    covers: float | None = None
+
+
 class SurfaceRow(NamedTuple):
     """A surface that descriptions can name, such as ice."""
 
@@ -290,6 +300,7 @@ WEATHER: Mapping[WeatherKind, WeatherRow] = {
 }
 LIGHTS: Mapping[Light, str] = {name: row["said"] for name, row in SCENES["lights"].items()}
 SURFACES: Mapping[str, SurfaceRow] = {name: SurfaceRow(**row) for name, row in SCENES["surfaces"].items()}
+ROADWORKS: Mapping[Works, WorksRow] = {name: WorksRow(**row) for name, row in SCENES["roadworks"].items()}
 LANDFORMS: Mapping[Landform, LandRow] = {name: LandRow(**row) for name, row in SCENES["landforms"].items()}
 
 

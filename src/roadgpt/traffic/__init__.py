@@ -59,7 +59,7 @@ def begin(
         from roadgpt.traffic.aiming import aims_of, steady
 
         stage = stage._replace(aims=aims_of(stage, path or [*steady(road, world)]))
-    if scene.actors or scene.parked:
+    if scene.actors or scene.parked or scene.roadworks:
         from roadgpt.traffic.script import Script
 
         movers.append(Script(stage))

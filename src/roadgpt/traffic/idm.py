@@ -29,8 +29,9 @@ from roadgpt.network.network import Leg, Network, RoadEnd
 from roadgpt.road import Road
 from roadgpt.traffic import following as f
 from roadgpt.traffic.actor import SIZES, SPEED, STEP, Actor, FloatArray, TestedCar
-from roadgpt.traffic.lane_map import PER_CHANGE, PF, PG, LaneMap, lane_map, on_friction, place_on
+from roadgpt.traffic.lane_map import PER_CHANGE, PF, PG, LaneMap, lane_map, on_friction, place_on, touched
 from roadgpt.traffic.lights import Lights
+from roadgpt.traffic.places import works_rows
 from roadgpt.traffic.traffic import Stage
 
 DENSITY: Mapping[str, float] = {name: per_km / 1000.0 for name, per_km in FLOWS.items()}
@@ -56,6 +57,7 @@ NEAREST, LENGTH = 20.0, 8.0  # m between the middles of two who follow each othe
 APART = 12.0  # m, from the middle of a vehicle at the start to who stands or drives there by a scene
 NOBODY, NO_LIGHTS = np.empty((0, 7)), np.empty(0, np.int64)
 ABREAST = 15.0  # m, from the tested car to somebody in another lane at the start
+EARLY = 35.0  # m, before roadworks that block its lane, somebody has to change lanes
 AHEAD, BEHIND = 30.0, 15.0  # m before and behind the tested car where nobody is at first, and 2 s of its way
 
 
@@ -71,7 +73,7 @@ class IdmMover:
         road, network = stage.road, network_of(stage.road, stage.world)
         lanes = lanes_of(network)
         dry, self.ids = lane_map(lanes, stage.world.limits.speed_limit, _near(lanes, road))
-        self.lanes = on_friction(dry, _friction(stage, network, dry, self.ids))
+        self.lanes = _closed(stage, on_friction(dry, _friction(stage, network, dry, self.ids)))
         circle, falls = self.lanes.sample[:, PG], np.abs(self.lanes.sample[:, PF])
         least = np.minimum.reduceat(circle - falls, self.lanes.first[:-1])
         self._ease = np.maximum(SLOWING * least, LEAST_GRIP)
@@ -337,6 +339,17 @@ def _friction(stage: Stage, network: Network, lanes: LaneMap, ids: Sequence[Leg]
             s = start + (s if leads(key.lane) == leads(leg.lane) else member.road.length - s)
             found[rows] = [world.friction_at(each) for each in s.tolist()]
     return found
+
+
+def _closed(stage: Stage, lanes: LaneMap) -> LaneMap:
+    """Returns the lanes, of which those that roadworks block end there, where one leads past them."""
+    ends, usable, found = lanes.ends.copy(), lanes.usable.copy(), np.zeros((9, 5))
+    for kind, (x, y, _, heading, _) in works_rows(stage.road, stage.world, stage.seed):
+        count = touched(lanes, x, y, heading, *SIZES[kind][:2], 0.0, -1.0, found, 0)
+        for n, s in found[:count, :2]:
+            if max(lanes.beside[int(n)]) >= 0:
+                ends[int(n)], usable[int(n), 1] = True, min(usable[int(n), 1], s - EARLY)
+    return lanes._replace(ends=ends, usable=usable)
 
 
 def _is_close(car: TestedCar, x: float, y: float, is_own: bool) -> bool:

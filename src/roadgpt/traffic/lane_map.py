@@ -20,6 +20,7 @@ IntArray = NDArray[np.int64]
 STEP = 1.0  # m, desired distance between the samples of a lane
 CELL = 2.0  # m, side of the cells in which samples are looked up
 LEAST = 2.4  # m, width of a lane from which on vehicles use it
+PASSES = 1.3  # m, from the middle of a lane to who stands there, beside whom a truck of 2.5 m drives
 TOUCH = 0.15  # m by which a box has to reach into a lane to count as being in it
 APART = 0.8  # m, most between the points of a box that are looked up
 PX, PY, PZ, PH, PW, PV, PC, PS, PG, PF = range(10)
@@ -308,7 +309,7 @@ def touched(
 ) -> int:  # fmt: skip
     """Adds a row to ``entries`` for each lane that a box touches: the lane, the first and the last station
     that the box touches, its speed along the lane, and the number of the body. Returns the number of rows
-    then."""
+    then. A body that stands is not in a lane which a truck drives past it, nor behind where one ends."""
     begin = count
     c, s = math.cos(heading), math.sin(heading)
     along = max(2, math.ceil(length / APART) + 1)
@@ -326,12 +327,15 @@ def touched(
                 k = lanes.cells[at]
                 dx, dy = px - lanes.sample[k, PX], py - lanes.sample[k, PY]
                 ch, sh = lanes.sample[k, PC], lanes.sample[k, PS]
-                if abs(dy * ch - dx * sh) > lanes.sample[k, PW]:
+                wide = PASSES if body < 0.0 and speed == 0.0 else LEAST + lanes.sample[k, PW]
+                if abs(dy * ch - dx * sh) > min(wide, lanes.sample[k, PW]):
                     continue
                 lane, ahead = lanes.lane_of[k], dx * ch + dy * sh
                 if abs(ahead) > 0.51 * lanes.step[lane]:
                     continue
                 station = (k - lanes.first[lane]) * lanes.step[lane] + ahead
+                if body < 0.0 and speed == 0.0 and lanes.ends[lane] and station > lanes.usable[lane, 1]:
+                    continue
                 found = -1
                 for n in range(begin, count):
                     if entries[n, 0] == lane:

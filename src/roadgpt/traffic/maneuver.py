@@ -7,8 +7,8 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from roadgpt.brief.amount import exactly
-from roadgpt.brief.scene import Action, Role, Scene, Signal
+from roadgpt.brief.amount import Frozen, exactly
+from roadgpt.brief.scene import Action
 from roadgpt.language.names import ActorKind, What
 from roadgpt.language.table import CUES, MANEUVERS, NUMBERS, ROAD_USERS
 
@@ -79,9 +79,8 @@ class Maneuver:
         return max(lasts, math.pi * math.sqrt(abs(by) / 2 / most), 1e-3)
 
 
-def drawn(thing: Role | Action | Signal | Scene, rng: np.random.Generator) -> dict[str, float]:
-    """Returns a number for each range of a role, an action, a signal or a scene, in metres, seconds and
-    shares."""
+def drawn(thing: Frozen, rng: np.random.Generator) -> dict[str, float]:
+    """Returns a number for each range of a part of a scene, in metres, seconds and shares."""
     found = {}
     for field, number in NUMBERS.items():
         amount = getattr(thing, field, None)

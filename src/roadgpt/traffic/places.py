@@ -2,7 +2,7 @@
 
 import math
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roadgpt.brief.outline import USUALLY_WIDEST
-from roadgpt.brief.scene import Mark, Scene
+from roadgpt.brief.scene import Mark, Roadworks, Scene
 from roadgpt.check.measures import measure
 from roadgpt.errors import SceneError
 from roadgpt.geometry.boxes import corners
 from roadgpt.language.names import ActorKind, Side, Where
+from roadgpt.language.table import ROADWORKS
 from roadgpt.network import is_route, network_of
 from roadgpt.network.lanes import lanes_of
 from roadgpt.network.line import SPACING, Line
@@ -22,6 +23,7 @@ from roadgpt.network.markings import CROSSWALK
 from roadgpt.plural import plural
 from roadgpt.traffic.actor import HEADING, SIZES, FloatArray
 from roadgpt.traffic.lane_map import LEAST
+from roadgpt.traffic.maneuver import ROLL, drawn
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -37,6 +39,7 @@ ALONG = 2.5  # m before and behind a parked car where the edge of the lanes is l
 WIDEST = (USUALLY_WIDEST, 1000.0, 4000.0)
 """The radii in metres of the widest bends that are turns: the wider ones if there are not enough others."""
 ROOM = 1.5  # m, from the middle of a way to the vehicles that are parked beside it
+SPACED = 0.682  # s at the limit, between cones of a taper: 1 ft for each mph (MUTCD, 6F.63); else twice
 SIGN = {"left": 1.0, "right": -1.0}
 
 
@@ -75,6 +78,17 @@ def offset_of(where: Where, side: Side | None, s: float, road: "Road", world: "W
 def _lanes_beside(s: float, road: "Road", world: "World", width: float) -> dict[str, list[float]]:
     """Returns the offsets of the lanes of this width of the tested car's direction, to its left and to its
     right, and of the oncoming ones, each from the nearest to the farthest."""
+    found: dict[str, list[float]] = {"left": [], "right": [], "oncoming": []}
+    for left, right, is_same, is_own in _lanes_at(s, road, world):
+        if not is_own and left - right >= width:
+            side = ("left" if left + right > 0 else "right") if is_same else "oncoming"
+            found[side].append((left + right) / 2)
+    return {name: sorted(offsets, key=abs) for name, offsets in found.items()}
+
+
+def _lanes_at(s: float, road: "Road", world: "World") -> Iterator[tuple[float, float, bool, bool]]:
+    """Yields the left and the right edge of each driving lane, in metres to the left of the tested car's
+    path, whether it leads as the tested car's does, and whether it is that."""
     profile = world.profile_of(road)
     station, t, lane = s, float(profile.middle(s)), profile.driven_id
     if is_route(road):
@@ -84,15 +98,10 @@ def _lanes_beside(s: float, road: "Road", world: "World", width: float) -> dict[
         profile = replace(member.profile, aside=profile.aside)
     is_along = profile.leads_along(lane)
     ids = (profile.along_ids, profile.against_ids)[:: 1 if is_along else -1]
-    edges = [(each, profile.edges_of(each, station)) for each in (*ids[0], *ids[1])]
-    found: dict[str, list[float]] = {"left": [], "right": [], "oncoming": []}
-    for each, (left, right) in edges:
-        offset = float((left + right) / 2 - t) * (1 if is_along else -1)
-        is_own = each == lane if profile.aside == 0.0 else abs(offset) <= (left - right) / 2
-        if not is_own and left - right >= width:
-            same = "left" if offset > 0 else "right"
-            found[same if each in ids[0] else "oncoming"].append(offset)
-    return {name: sorted(offsets, key=abs) for name, offsets in found.items()}
+    for each in (*ids[0], *ids[1]):
+        edges = [float(edge - t) * (1 if is_along else -1) for edge in profile.edges_of(each, station)]
+        is_own = each == lane if profile.aside == 0.0 else min(edges) <= 0.0 <= max(edges)
+        yield max(edges), min(edges), each in ids[0], is_own
 
 
 def stretch_of(mark: Mark, road: "Road", path: Line) -> tuple[float, float]:
@@ -149,3 +158,48 @@ def parked_rows(
             if not is_in_lane and not any(line.intersects(shapely.Polygon(box)) for line in lines):
                 found.append((kind, state))
     return found
+
+
+def works_rows(road: "Road", world: "World", seed: int) -> list[tuple[ActorKind, FloatArray]]:
+    """Returns the cones of roadworks and what stands behind them, each with its state; nothing stands in
+    junctions. Raises SceneError if the road has no such place."""
+    found = list[tuple[ActorKind, FloatArray]]()
+    for number, works in enumerate(world.scene.roadworks):
+        n, row = drawn(works, np.random.default_rng([seed, 107, number])), ROADWORKS[works.kind]
+        first = n.get("station", world.start_on(road) + ROLL * world.first_speed)
+        outer, inner, is_against = _strip(works, min(first, road.length), road, world)
+        aside, limit = n.get("shift", row.covers or abs(inner - outer)), world.limits.speed_limit
+        ends = works.stations(first, n["length"], aside, limit)
+        ends = [first + ends[-1] - each for each in ends[::-1]] if is_against else ends
+        if ends[-1] > road.length or aside < SIZES["cones"].width:
+            has = f"ends at {road.length:.0f} m" if ends[-1] > road.length else "has no such shoulder"
+            raise SceneError(f"{works} end at {ends[-1]:.0f} m, and the road {has}; change one of them")
+        is_inside = (outer > inner) != world.profile_of(road).left_hand and not is_against
+        least = is_inside * SIZES["cones"].width  # so that none stands in the next lane
+        things = list[tuple[ActorKind, float]]()
+        for a, b, apart in zip(ends, ends[1:], (SPACED, 2 * SPACED, SPACED), strict=False):
+            at = np.linspace(a, b, math.ceil((b - a) / apart / limit) + 1)[a > first :]
+            things += [("cones", s) for s in at.tolist()]
+        rest = np.linspace(ends[1], (ends[1] + ends[2]) / 2, max(len(row.inside), 1))
+        for kind, s in [*things, *zip(row.inside, rest.tolist(), strict=False)]:
+            outer, inner, _ = _strip(works, s, road, world)
+            into = float(np.interp(s, ends, [least, aside, aside, least])) - SIZES[kind].width / 2
+            into = into if kind == "cones" else abs(inner - outer) / 2
+            t = float(world.profile_of(road).middle(s)) + outer + into * math.copysign(1.0, inner - outer)
+            if not any(each.start < s < each.end for each in road.passages):
+                found.append((kind, np.array([*road.at(s, t), float(road.heading(s)), 0.0])))
+    return found
+
+
+def _strip(works: Roadworks, s: float, road: "Road", world: "World") -> tuple[float, float, bool]:
+    """Returns the outer and inner edge of the lane of roadworks, or the shoulder, in metres to the left of
+    the tested car's path, and whether it is oncoming: on the far side, where one lane leads along."""
+    profile, lanes = world.profile_of(road), [*_lanes_at(s, road, world)]
+    own, against = ([each for each in lanes if each[2] == same] for same in (True, False))
+    side = works.side or ("left" if profile.left_hand else "right")
+    is_far = (side == "left") != profile.left_hand and (len(own) == 1 or works.kind == "shoulder")
+    left, right, *_ = (max if side == "left" else min)(against if is_far and against else own)
+    outer, inner = (left, right) if side == "left" else (right, left)
+    if works.kind == "shoulder":
+        outer, inner = float(getattr(profile.rims(s), side) - profile.middle(s)), outer
+    return outer, inner, is_far and bool(against)

@@ -16,7 +16,7 @@ from roadgpt.traffic.crash import crash
 from roadgpt.traffic.extras import COMES, Extra
 from roadgpt.traffic.following import ALONG
 from roadgpt.traffic.performer import Performer
-from roadgpt.traffic.places import parked_rows
+from roadgpt.traffic.places import parked_rows, works_rows
 from roadgpt.traffic.placing import BEHIND, INTO, ONCOMING, STANDS, Placing
 from roadgpt.traffic.traffic import ENDED, LATE, NEVER, T0, Stage, Stretch
 
@@ -39,7 +39,9 @@ class Script:
         free = [each.course.way.points for each in self._performers if each.course.way is not self._way]
         there = [(np.array(at), each.size) for each in self._performers if (at := each.state())]
         free += [corners(state[:2], state[HEADING], np.array(size)) for state, size in there]
-        rows = parked_rows(stage.world.scene, stage.road, stage.world, stage.seed, free)
+        rows = works_rows(stage.road, stage.world, stage.seed)
+        free += [corners(state[:2], state[HEADING], np.array(SIZES[kind])) for kind, state in rows]
+        rows += parked_rows(stage.world.scene, stage.road, stage.world, stage.seed, free)
         kinds = [each.role.kind for each in self._performers]
         kinds += [*(each.kind for each in self._extras), *(kind for kind, _ in rows)]
         self.actors = [

@@ -29,6 +29,7 @@ from roadgpt.brief.plan import (
     AN_ACTOR,
     CONDITIONS,
     SCENE,
+    WORKS,
     Language,
     action_plan,
     language,
@@ -37,7 +38,7 @@ from roadgpt.brief.plan import (
     scene_plan,
     written,
 )
-from roadgpt.brief.scene import Action, Land, Role, Scene, SlipperyPlace
+from roadgpt.brief.scene import Action, Land, Roadworks, Role, Scene, SlipperyPlace
 from roadgpt.errors import BriefError, EditError
 from roadgpt.language.names import Kind, Sharpness, Side
 from roadgpt.language.table import (
@@ -60,6 +61,7 @@ LISTS: Mapping[str, tuple[str, type[Frozen]]] = {
     **dict.fromkeys(ACTORS, ("actors", Role)),
     **dict.fromkeys(LANDS, ("landscape", Land)),
     "slippery": ("slippery", SlipperyPlace),
+    WORKS: (WORKS, Roadworks),
 }
 """The parts of which a scene can have several, each with the field that holds them, and their type."""
 SINGLE: Mapping[str, tuple[str, ...]] = {
@@ -491,7 +493,7 @@ class SceneChangeParser(ChangeParser):
 
     def _things(self, name: str) -> Things:
         has = {"every": name in LISTS, "where": name in (*ACTORS, "")}
-        has["side"] = name in (*ACTORS, *LANDS, "parked", "")
+        has["side"] = name in (*ACTORS, *LANDS, WORKS, "parked", "")
         fields: dict[str, Any] = {}
         self._name(fields, language({field: part for field, part in THINGS.parts.items() if has[field]}))
         return Things(name, **fields)

@@ -167,7 +167,7 @@ class _Stage:
             if target.where in (None, getattr(each, "where", None))
             and target.side in (None, getattr(each, "side", None))
         ]
-        fit = [place for place, kind in there if target.name in (kind, "actor", "landscape")]
+        fit = [place for place, kind in there if target.name in (kind, "actor", "landscape", "roadworks")]
         if not fit:  # a deer may be an animal of the scene, and the other way round
             fit = [place for place, kind in there if {target.name, kind} in ALIKE]
         if not fit:
