@@ -47,6 +47,8 @@ REACHED = 0.1  # m/s
 HOLDS = 0.1  # share of full braking, with which a driver only holds its speed on a slope
 LONGER, SETTLES = 1.2, 0.5  # share and s, by which a change of speed may last longer than it is told to
 STEADY = 0.5  # m/s, of changes of speed that are too small to be compared
+AT_FIRST = 30 / 3.6  # m/s, to which it pulls out, if nothing is said
+LONG = 20.0  # s, for which it has not come into a lane, and stands: more than a change and a contact take
 NEAREST = 0.3  # m before the place where it stops
 BACK = 0.5  # m/s, with which it is steered back at most
 FAR = 1e6  # m, to nobody
@@ -60,6 +62,7 @@ ROW = 15.0  # m between those that stand in one row
 PASSED = {"overtake": 10.0, "pass": 2.0}  # m, behind its rear, where it goes back
 TASKS = ("speed", "brake", "stop", "creep", "change_lane")
 """What a driver may do itself."""
+INTO_LANE = ("change_lane", "pull_out", "pull_over")
 ERRORS = ("run_light", "run_sign")
 """What it does although the driver brakes."""
 EMERGENCY, CLOSE, SOON, SIDEWAYS = 0.6, 8.0, 3.0, 15.0
@@ -454,7 +457,7 @@ class ScriptHand:
                 self._tell("after", self._maneuvers[number - 1], view)
             self._tell("with", each, view)
             self._lateral.t, self._lateral.slide = self._aside(view), None
-            if each.what in (*AROUND, "change_lane", "pull_out", "pull_over"):
+            if each.what in (*AROUND, *INTO_LANE):
                 self._go_aside(each, view)
             elif each.what in ("reverse", "u_turn"):
                 self._shunt = Shunt(self.road, self._world, self._box, each, view)
@@ -534,6 +537,8 @@ class ScriptHand:
         n, accel = maneuver.n, maneuver.n.get("accel")
         goal = n.get("to", None if accel is None else FAST * (accel > 0))
         there = Phase(goal, abs(accel or CHANGE), until="there")
+        if maneuver.what == "pull_out" and goal is None and self._speed.v < ROLLS:
+            there = there._replace(goal=min(AT_FIRST, self._world.limits.speed_limit))
         if maneuver.what in ("pull_out", "pull_over"):
             profile, s = self._world.profile_of(self.road), self._line.to_road(self._course.s)
             by, self._phases = self._back(), [there]
@@ -684,6 +689,10 @@ class ScriptHand:
         found = list(self._skipped)
         if self._around and self._phases:
             found.append(f"{NEVER} {self._did(self._begun - 1)}: it had not come past")
+        elif self._phases and self._maneuvers[self._begun - 1].what in INTO_LANE:
+            stands = self._speed.v < ROLLS and self._triggers.time - self._since > LONG
+            if self._phases[0].until == "there" and stands:
+                found.append(f"{NEVER} {self._did(self._begun - 1)}: it had not come there")
         if self._begun < len(self._maneuvers):
             found.append(f"{NEVER} {self._did(self._begun)}: {self._why(self._begun)}")
         return tuple(found)

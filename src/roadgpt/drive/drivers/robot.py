@@ -17,7 +17,7 @@ class Robot(Reference):
     """Drives as the robots in the cars of Euro NCAP's tests do: holds the middle of its lane and its speed,
     whatever is ahead.
 
-    The speed is that of the scene, else the speed limit; where the scene makes the car stand at first, that
+    The speed is that of the scene, else the speed limit; where the scene makes a car that stands go on, that
     with which it has gone on. Euro NCAP allows the car 0.5 km/h more and 0.05 m to either side. The robot
     does not slow down for bends: where a bend needs more friction than there is, the car leaves its path. It
     does not look at others, lights or signs.
@@ -46,7 +46,9 @@ class Robot(Reference):
         for curvature, stretch in zip(line.curvature[1:], line.stretch[1:], strict=True):
             share = math.exp(-line.step * stretch / self.to_rear)
             self._yaw.append(share * self._yaw[-1] + (1 - share) * curvature)
-        self._held, self._stands = world.first_speed, world.scene.stands and bool(world.scene.actions)
+        goes_on = any(each.what not in ("wait", "release") for each in world.scene.actions)
+        self._stands = world.scene.stands and goes_on
+        self._held = 0.0 if self._stands else world.first_speed or world.driven_speed
         self._aside = self._behind = self._was = 0.0
 
     def steer(self, view: View) -> Command:
