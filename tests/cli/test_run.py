@@ -14,6 +14,7 @@ from roadgpt.campaign import single_test
 from roadgpt.cli import app
 from roadgpt.drive.isolation import proxy
 from roadgpt.errors import DesignError
+from roadgpt.run.folder import read_run
 from rows import rows
 
 WORDS = "an uphill road with 3 turns"
@@ -77,6 +78,24 @@ def test_words_that_cannot_be_a_road_get_one_sentence(words: str) -> None:
     assert result.stderr.startswith("roadgpt: ")
     assert len(result.stderr) < 600
     assert not Path("roadgpt-runs").exists()
+
+
+@pytest.mark.parametrize(
+    ("option", "width", "limit"),
+    [([], 2.5, 30), (["--lane-width", "4"], 4, 30), (["--speed-limit", "70"], 2.5, 70)],
+)
+def test_widths_and_limits_of_a_plan_are_built_unless_an_option_gives_others(
+    option: list[str], width: float, limit: float
+) -> None:
+    given = ["--plan", "--seed", "3", "--no-plot", *option]
+    first = invoke("straight 200 | width=2.5 limit=30", *given, "-n", "1", "--out", "r")
+    assert first.exit_code == 0
+    assert ("is set and used" in first.output) == bool(option)
+    assert invoke("straight 200 | width=2.5 limit=30", *given, "-n", "2", "--out", "r").exit_code == 0
+    for number in ("0001", "0002"):
+        world = read_run(Path(f"r/runs/{number}")).world
+        assert world.section.lane_width == width
+        assert world.limits.speed_limit == pytest.approx(limit / 3.6)
 
 
 @pytest.mark.parametrize(("words", "options", "forward", "backward"), rows(__file__, "lanes_asked_for"))

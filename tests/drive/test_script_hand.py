@@ -99,6 +99,27 @@ def test_standing_it_starts_when_it_is_told() -> None:
     assert hands(drive) == [(PEDALS, 0.0, pytest.approx(7.0, abs=0.05))]
 
 
+@pytest.mark.parametrize("driver", ["reference", "robot"])
+@pytest.mark.parametrize("scene", ["ego v=0", "ego v=0: wait 3", "ego parked right: wait 3, release"])
+def test_who_stands_goes_on_up_to_the_limit_once_nothing_holds_it(driver: str, scene: str) -> None:
+    drive = drive_of(f"straight 300 && {scene}", driver)
+    assert drive.ended == "goal"
+    assert 60.0 < 3.6 * drive["speed"].max() < 72.0
+
+
+@pytest.mark.parametrize("driver", ["reference", "robot"])
+def test_who_is_parked_pulls_out_or_it_has_not_happened(driver: str) -> None:
+    assert drive_of("straight 150 && ego parked right: pull_out", driver).ended == "goal"
+    blocked = run_of("straight 100 && ego parked right: pull_out; car parked right s=10", driver)
+    assert blocked.outcome in ("FAIL", "INVALID", "NOT TESTED")
+
+
+def test_a_corner_that_is_not_cut_is_no_pass() -> None:
+    found = run_of("| lanes=2 && ego v=50: cut_corner; wet")
+    assert found.outcome == "NOT TESTED"
+    assert "cuts the corner: it was given up" in found.description
+
+
 @pytest.mark.parametrize(("side", "sign"), [("left", 1), ("right", -1)])
 def test_it_drifts_as_far_and_as_fast_as_told(side: str, sign: int) -> None:
     drive = drive_of(f"straight 300 && ego v=60: drift {side} shift=1.2 lat=0.5 time=4", "lane_centring")
@@ -419,6 +440,10 @@ REFUSED = {
     "ego: pass car 2; car ahead": "there is no 'car 2' to pass",
     "ego: brake; car behind: stop with ego stop": "needs a tested car that is told to 'stop'",
     "ego: brake car 1; car ahead": "there is no 'car 1' to brake",
+    "ego: creep for=6 s=100, brake 3 s=50": "before that it creeps .*; change their order",
+    "ego v=50: brake 6 to=80": "is no faster than that; write speed 80",
+    "ego: run_light; lights green": "runs a red light, and lights are green",
+    "ego: brake 3; run_sign": r"no 'run_sign' \(what one does is divided by commas\)",
     "truck behind: overtake car 1; car ahead": "only the tested car can overtake 'car 1'",
 }
 

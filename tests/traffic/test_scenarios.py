@@ -171,7 +171,7 @@ def test_weather_and_traffic_join_a_scenario_and_contradictions_do_not() -> None
     both = one.onto(read_plan("straight && light; fog 60").scene)
     assert (both.flow, both.light, both.actors) == ("light", "night", one.onto(Scene()).actors)
     assert one.onto(both) == both
-    for other in ("low_sun", "car ahead", "ego v=20"):
+    for other in ("low_sun", "car ahead", "ego v=20", "ego: stop s=20"):
         with pytest.raises(UsageError, match="contradict each other"):
             one.onto(read_plan(f"straight && {other}").scene)
 

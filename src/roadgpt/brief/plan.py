@@ -569,8 +569,10 @@ def scene_fields(text: str) -> dict[str, object]:
         else:
             known = (*ROAD_USERS, TESTED_CAR, SIGNAL, "oncoming", "parked", SLIPPERY, WORKS, *WEATHER, CLOCK)
             known += (*CONDITIONS, *LANDFORMS)
+            comma = " (what one does is divided by commas)" if first in MANEUVERS else ""
             raise BriefError(
-                f"a scene has no '{part[:40]}'; its parts, divided by ;, begin with one of {', '.join(known)}"
+                f"a scene has no '{part[:40]}'{comma}; its parts, divided by ;, "
+                f"begin with one of {', '.join(known)}"
             )
     several["parked"].sort()
     several["weather"] = [airs[kind] for kind in WEATHER if kind in airs]

@@ -6,6 +6,7 @@ another, each begun by a condition. A number may be a range, from which each dri
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import ceil, inf
 from typing import Annotated, Any, Literal, Self, get_args
 
@@ -466,6 +467,16 @@ class Scene(Frozen):
                     f"the tested car stands until it {action}, and so never comes there; give time=, or what "
                     "somebody else does"
                 )
+        if self.runs_light and self.signal and self.signal.shows == "green" and self.signal.time is None:
+            raise ValueError("the tested car runs a red light, and lights are green; leave one of them out")
+        for one, two in pairwise(self.actions):
+            for name in ("station", "distance", "time"):
+                first, then = getattr(one, name), getattr(two, name)
+                if first and then and span(then).hi < span(first).lo:
+                    raise ValueError(f"the tested car {two}, and before that it {one}; change their order")
+        slows = self.actions[0] if self.actions and self.actions[0].what == "brake" else None
+        if slows and slows.to and self.speed and span(slows.to).lo >= span(self.speed).hi > 0:
+            raise ValueError(f"the tested car {slows}, and is no faster than that; write speed {slows.to}")
         for action in self.actions:
             if action.what not in OF_ITSELF:
                 can = ", ".join(OF_ITSELF)
@@ -552,8 +563,12 @@ class Scene(Frozen):
     @property
     def lights(self) -> Signal | None:
         """What the first traffic lights show: as told, or red where the tested car is to run a red light."""
-        runs = any(each.what == "run_light" for each in self.actions)
-        return self.signal or (Signal(shows="red") if runs else None)
+        return self.signal or (Signal(shows="red") if self.runs_light else None)
+
+    @property
+    def runs_light(self) -> bool:
+        """Whether the tested car is to run a red light."""
+        return any(each.what == "run_light" for each in self.actions)
 
     @property
     def has_others(self) -> bool:

@@ -248,12 +248,14 @@ class WorldTable(Frozen, strict=True):
     max_grade: Annotated[float, Field(gt=0, le=1)] = 0.15
 
     def world(self) -> World:
-        """Returns the World; lanes, friction, map size and scene stay unset if the file does not give them:
-        prompts may."""
-        open_ = {"lanes", "friction", "map_size", "scene"} - self.model_fields_set
+        """Returns the World; lanes, their width, the speed limit, friction, map size and scene stay unset if
+        the file does not give them: prompts may."""
+        open_ = {"lanes", "lane_width", "friction", "map_size", "scene"} - self.model_fields_set
         values = self.model_dump(exclude={"speed_limit_kmh", *open_}, exclude_none=True)
-        bank = self.bank / 100 if isinstance(self.bank, float) else self.bank
-        return World().changed(**values | {"speed_limit": self.speed_limit_kmh / 3.6, "bank": bank})
+        values["bank"] = self.bank / 100 if isinstance(self.bank, float) else self.bank
+        if "speed_limit_kmh" in self.model_fields_set:
+            values["speed_limit"] = self.speed_limit_kmh / 3.6
+        return World().changed(**values)
 
 
 class PlanTable(PlanChoices, strict=True):

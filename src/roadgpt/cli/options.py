@@ -675,10 +675,14 @@ def world_of(values: dict[str, Any]) -> "World":
     from roadgpt.road import World
 
     given = {each.field: each.read(values.pop(each.field)) for each in WORLD if each.field in values}
+    source_of, usual = click.get_current_context().get_parameter_source, World().values()
+    for name in {"lane_width", "speed_limit"} & {*given}:  # words may ask for others
+        if source_of(name) is ParameterSource.DEFAULT and given[name] == usual[name]:
+            del given[name]
     if "oracle" in given:  # what is typed precedes what files set, and this the default oracle
         from roadgpt.road.world import oracle_limits
 
-        limits, source_of = oracle_limits(), click.get_current_context().get_parameter_source
+        limits = oracle_limits()
         found = {name: given.pop(name) for name in ("oracle", *limits)}
         for source in (ParameterSource.DEFAULT, ParameterSource.DEFAULT_MAP, ParameterSource.COMMANDLINE):
             some = {name: found[name] for name in found if source_of(name) is source}

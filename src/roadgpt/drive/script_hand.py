@@ -374,6 +374,8 @@ class ScriptHand:
         if self._lateral.end != 0.0:
             self._lateral.slide_to(0.0, max(math.pi / 2 * abs(self._lateral.t) / BACK, view.dt))
             self._phases = [Phase(to=0.0, slides=1.0, until="there")]
+            if self._maneuvers[self._begun - 1].what == "cut_corner":
+                self._skipped.append(f"{NEVER} {self._did(self._begun - 1)}: it was given up")
             return True
         is_out = bool(self._around) and len(self._phases) > 1
         _, met, _ = self._met(self._around) if is_out else ("", self._nobody, 0.0)
