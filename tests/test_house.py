@@ -302,8 +302,8 @@ def test_the_package_offers_every_value_and_verb_that_it_names() -> None:
 
     for name in roadgpt.__all__:
         assert getattr(roadgpt, name) is not None
-    for name, room in roadgpt._ROOMS.items():  # a room that is loaded already would hide a wrong one
-        assert hasattr(import_module(f"roadgpt.{room}"), name)
+    for room, names in roadgpt._OFFERED.items():  # a room that is loaded already would hide a wrong one
+        assert all(hasattr(import_module(f"roadgpt.{room}"), name) for name in names.split())
     with pytest.raises(AttributeError, match="it offers Brief"):
         _ = roadgpt.gpt
 

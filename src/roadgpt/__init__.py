@@ -13,6 +13,8 @@ import sys
 from importlib import import_module
 from typing import Any
 
+from roadgpt.later import load, names_of
+
 __version__ = "0.1.0"
 
 # Every public class and function, by the sub-package or module that defines it.
@@ -31,15 +33,11 @@ _OFFERED = {
     "report.plotting": "plot",
     "report.similarity": "compare",
 }
-_ROOMS = {name: room for room, names in _OFFERED.items() for name in names.split()}
-
-__all__ = ["__version__", *sorted(_ROOMS)]
+__all__ = ["__version__", *names_of(_OFFERED)]
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _ROOMS:
-        raise AttributeError(f"roadgpt has no '{name}'; it offers {', '.join(sorted(_ROOMS))}")
-    return getattr(import_module(f"roadgpt.{_ROOMS[name]}"), name)
+    return load(__name__, _OFFERED, name)
 
 
 def __dir__() -> list[str]:

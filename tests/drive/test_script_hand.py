@@ -443,7 +443,7 @@ REFUSED = {
     "ego: creep for=6 s=100, brake 3 s=50": "before that it creeps .*; change their order",
     "ego v=50: brake 6 to=80": "is no faster than that; write speed 80",
     "ego: run_light; lights green": "runs a red light, and lights are green",
-    "ego: brake 3; run_sign": r"no 'run_sign' \(what one does is divided by commas\)",
+    "ego: brake 3; run_sign": r"no 'run_sign'; its parts, divided by ; \(actions of one by commas\)",
     "truck behind: overtake car 1; car ahead": "only the tested car can overtake 'car 1'",
 }
 

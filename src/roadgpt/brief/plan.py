@@ -569,9 +569,8 @@ def scene_fields(text: str) -> dict[str, object]:
         else:
             known = (*ROAD_USERS, TESTED_CAR, SIGNAL, "oncoming", "parked", SLIPPERY, WORKS, *WEATHER, CLOCK)
             known += (*CONDITIONS, *LANDFORMS)
-            comma = " (what one does is divided by commas)" if first in MANEUVERS else ""
             raise BriefError(
-                f"a scene has no '{part[:40]}'{comma}; its parts, divided by ;, "
+                f"a scene has no '{part[:40]}'; its parts, divided by ; (actions of one by commas), "
                 f"begin with one of {', '.join(known)}"
             )
     several["parked"].sort()

@@ -145,8 +145,7 @@ class Scenario(NamedTuple):
         own = mirrored_scene(own) if left_hand else own
         told, added = own.told, other.told  # a stored test keeps to the person of its own scene
         for name, value in added.items():
-            usual = () if name == "actions" else value  # none is what the tested car does in most
-            is_other = name != "person" and told.get(name, usual) != value
+            is_other = name != "person" and told.get(name, () if name == "actions" else value) != value
             if is_other or (name == "light" in self.given and name not in told):
                 raise UsageError(
                     f"the scenario '{self}' and the other scene both say the {name} of the scene, and "

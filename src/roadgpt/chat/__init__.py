@@ -20,6 +20,7 @@ from roadgpt import plugins
 from roadgpt.chat.meter import Meter, counting
 from roadgpt.chat.model import ChatSettings, Message, Reply, Spent, Usage
 from roadgpt.errors import BudgetError, ChatError, RefusedError, ReplyError, UnparsableError, UsageError
+from roadgpt.later import load
 
 if TYPE_CHECKING:
     from roadgpt.chat.config import configured
@@ -122,8 +123,4 @@ def _made(kind: str, name: str, settings: ChatSettings | None) -> Any:
 
 
 def __getattr__(name: str) -> Any:
-    if name != "configured":
-        raise AttributeError(f"roadgpt.chat has no '{name}'; it offers {', '.join(__all__)}")
-    from roadgpt.chat.config import configured
-
-    return configured
+    return load(__name__, {"config": "configured"}, name)

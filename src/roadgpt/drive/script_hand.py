@@ -267,18 +267,14 @@ class ScriptHand:
             return self._shunt.command(view), SCRIPT
         steer, throttle, brake = command
         steers = self._hands != "pedals"
-        if self._errs and not (brake > EMERGENCY and self._meets_somebody(view)):
+        errs = bool(self._begun and self._phases) and self._maneuvers[self._begun - 1].what in ERRORS
+        if errs and not (brake > EMERGENCY and self._meets_somebody(view)):
             brake = 0.0
-        if not steers or (self._phases and self._phases[0].goal is not None) or self._holds:
+        if not steers or (self._phases and (self._phases[0].goal is not None or not self._phases[0].until)):
             own_throttle, own_brake = self._pedals(view)
             throttle, brake = own_throttle if brake <= own_brake + HOLDS else 0.0, max(brake, own_brake)
             brake = 0.0 if throttle else brake
         return (self._steered(view) if steers else steer, throttle, brake), SCRIPT if steers else PEDALS
-
-    @property
-    def _errs(self) -> bool:
-        """Whether it drives past a light or a sign before which its driver stops."""
-        return bool(self._begun and self._phases) and self._maneuvers[self._begun - 1].what in ERRORS
 
     def _meets_somebody(self, view: View) -> bool:
         """Whether somebody is close before the car, or about to come from a side."""
@@ -351,11 +347,6 @@ class ScriptHand:
                 at, lasts = self._line.to_road(self._places[number] + BEFORE_LINE), lasts + v / STOP
         end = view.time + LONGER * lasts + RETURNS
         self._tasks[number] = GivenTask(self._did(number), each.what, view.time, end, goal, at)
-
-    @property
-    def _holds(self) -> bool:
-        """Whether it stands, or goes on as fast as it is, for some time."""
-        return bool(self._phases) and self._phases[0].until is None
 
     def _see(self, view: View) -> None:
         before, self._speed.v = self._speed.v, max(view.vx, 0.0)

@@ -11,58 +11,39 @@ On a route through junctions, or among others, a verdict also lists what else we
 avoided, and whose fault it was; ``measure`` returns how critical a drive was.
 """
 
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from roadgpt.verdict.verdict import (
-    JUDGEMENT,
-    SEVERITIES,
-    Cause,
-    Contact,
-    Incident,
-    Outcome,
-    Severity,
-    Side,
-    Verdict,
-    graded,
-    percent,
-    severity,
-)
+from roadgpt.later import load, names_of
 
 if TYPE_CHECKING:
     from roadgpt.verdict.judging import judge, most_beyond
     from roadgpt.verdict.measures import Measures, measure
     from roadgpt.verdict.oracle import Oracle, consult
+    from roadgpt.verdict.verdict import (
+        JUDGEMENT,
+        SEVERITIES,
+        Cause,
+        Contact,
+        Incident,
+        Outcome,
+        Severity,
+        Side,
+        Verdict,
+        graded,
+        percent,
+        severity,
+    )
 
-__all__ = [
-    "JUDGEMENT",
-    "SEVERITIES",
-    "Cause",
-    "Contact",
-    "Incident",
-    "Measures",
-    "Oracle",
-    "Outcome",
-    "Severity",
-    "Side",
-    "Verdict",
-    "consult",
-    "graded",
-    "judge",
-    "measure",
-    "most_beyond",
-    "percent",
+# Commands that only show results load classes and scale alone; judging loads when needed.
+_OFFERED = {
+    "judging": "judge most_beyond",
+    "measures": "Measures measure",
+    "oracle": "Oracle consult",
+    "verdict": "JUDGEMENT SEVERITIES Cause Contact Incident Outcome Severity Side Verdict graded percent "
     "severity",
-]
-
-# The classes and the scale load at once, for commands that only show results; judging loads when needed.
-_LATER = {
-    "judge": "judging", "most_beyond": "judging", "Oracle": "oracle", "consult": "oracle",
-    "Measures": "measures", "measure": "measures",
-}  # fmt: skip
+}
+__all__ = names_of(_OFFERED)
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _LATER:
-        raise AttributeError(f"roadgpt.verdict has no '{name}'; it offers {', '.join(__all__)}")
-    return getattr(import_module(f"roadgpt.verdict.{_LATER[name]}"), name)
+    return load(__name__, _OFFERED, name)
