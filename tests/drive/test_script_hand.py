@@ -100,7 +100,7 @@ def test_standing_it_starts_when_it_is_told() -> None:
 
 
 @pytest.mark.parametrize("driver", ["reference", "robot"])
-@pytest.mark.parametrize("scene", ["ego v=0", "ego v=0: wait 3", "ego parked right: wait 3, release"])
+@pytest.mark.parametrize("scene", ["ego v=0: wait 3", "ego parked right: wait 3, release"])
 def test_who_stands_goes_on_up_to_the_limit_once_nothing_holds_it(driver: str, scene: str) -> None:
     drive = drive_of(f"straight 300 && {scene}", driver)
     assert drive.ended == "goal"

@@ -46,9 +46,9 @@ class Robot(Reference):
         for curvature, stretch in zip(line.curvature[1:], line.stretch[1:], strict=True):
             share = math.exp(-line.step * stretch / self.to_rear)
             self._yaw.append(share * self._yaw[-1] + (1 - share) * curvature)
-        goes_on = any(each.what not in ("wait", "release") for each in world.scene.actions)
-        self._stands = world.scene.stands and goes_on
-        self._held = 0.0 if self._stands else world.first_speed or world.driven_speed
+        stands, whats = world.scene.stands, {each.what for each in world.scene.actions}
+        self._stands = stands and not whats <= {"wait", "release"}
+        self._held = world.driven_speed if stands and whats and not self._stands else world.first_speed
         self._aside = self._behind = self._was = 0.0
 
     def steer(self, view: View) -> Command:
