@@ -20,7 +20,7 @@ from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.report import view
 from roadgpt.report.view import DRIVE
 from roadgpt.road import CrossSection, Design, Road, Site, World
-from roadgpt.run import Run, Setup, prove, write_run
+from roadgpt.run import Run, Setup, perform, prove, write_run
 from roadgpt.scene import Scenery
 
 EVIL = (
@@ -186,6 +186,15 @@ def test_the_drive_is_that_of_the_run(driven: Run) -> None:
             found, wanted = np.cos(found), np.cos(wanted)
         assert found == pytest.approx(wanted, abs=10.0**-digits)
     assert drive["car"]["length"] == driven.drive.car.length
+
+
+def test_the_lane_of_a_car_that_was_made_to_change_it_is_the_new_one(driven: Run) -> None:
+    """On lanes 4 m wide."""
+    plan = "straight 250 | lanes=2 && ego v=50: change_lane left s=60"
+    columns = view.scene(perform(plan, 1, setup=Setup(reader="plan")))["drive"]["columns"]
+    assert columns["middle"][-1] - columns["middle"][0] == pytest.approx(4.0)
+    assert columns["t"][-1] == pytest.approx(columns["middle"][-1], abs=0.3)
+    assert "middle" not in view.scene(driven)["drive"]["columns"]
 
 
 def test_a_drive_that_a_tyre_failed_is_in_the_colour_of_failing_from_then_on() -> None:

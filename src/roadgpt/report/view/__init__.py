@@ -255,6 +255,7 @@ def _drive(run: Run) -> dict[str, Any] | None:
     columns = {name: drive[name][kept] for name in DRIVE}
     columns["heading"] = np.unwrap(columns["heading"])
     failed = is_outside(road, drive, run.world)[kept]
+    middle = run.world.profile_of(drive.followed(road, run.world)).middle(columns["s"])
     height = drive["z"][0] - float(road.at(drive["s"][0], drive["t"][0])[2])
     return {
         "driver": drive.driver,
@@ -262,7 +263,8 @@ def _drive(run: Run) -> dict[str, Any] | None:
         "ended": drive.ended,
         "car": {**drive.car._asdict(), "height": round(float(height), MILLIMETRES)},
         "columns": {name: rounded(column, DRIVE[name]) for name, column in columns.items()}
-        | {"failed": failed.astype(int).tolist()},
+        | {"failed": failed.astype(int).tolist()}
+        | ({"middle": rounded(middle, MILLIMETRES)} if drive.moves else {}),
     }
 
 
@@ -436,11 +438,8 @@ def _median(profile: Profile, span: tuple[float, float]) -> dict[str, float] | N
         return None
     left, right = profile.carriageway
     kinds = [lane.kind for lane in (*profile.left[:left][::-1], *profile.right[:right])]
-    return {
-        "strip": kinds.index("median"),
-        "from": round(span[0], MILLIMETRES),
-        "to": round(span[1], MILLIMETRES),
-    }
+    first, last = (round(each, MILLIMETRES) for each in span)
+    return {"strip": kinds.index("median"), "from": first, "to": last}
 
 
 def _lanes(profile: Profile, s: Array) -> dict[str, Any]:

@@ -121,7 +121,7 @@ function write(find, scene, trip, fastest, moveTo) {
 }
 
 function tell(find, scene, trip, pose, time) {
-  const middle = pose.t - offsetAt(scene.road, scene.road.lanes.middle, pose.s);
+  const middle = pose.t - (pose.middle ?? offsetAt(scene.road, scene.road.lanes.middle, pose.s));
   const side = middle > 0 ? "left" : "right";
   const share = Math.round(100 * pose.outside);
   const isOver = trip.isDriven && time >= trip.duration;
