@@ -111,6 +111,13 @@ def test_a_collision_that_nobody_could_avoid_is_no_failure() -> None:
     assert "; not at fault; not avoidable by any of four drivers: careful driver coll" in verdict.description
 
 
+def test_who_reverses_into_somebody_who_stands_hits_that_one() -> None:
+    own = straight(80, -2, 0, -3)
+    verdict = judge(ROAD, scene(own, car_2=("car", straight(65, -2, 0, 0))), WORLD)
+    assert verdict.description.startswith("hit car 2 after")
+    assert "its rear met the front of car 2, standing" in verdict.description
+
+
 def test_two_contacts_are_counted_and_the_first_one_is_the_cause() -> None:
     others = {f"cones_{n}": ("cones", straight(60.0 + 20 * n, -2, 0, 0)) for n in range(3)}
     verdict = judge(ROAD, scene(straight(10, -2, 0, 15), **others), WORLD)

@@ -332,11 +332,12 @@ def _touched(incident: Incident, where: str, fault: Fault | None) -> str:
     """Returns in words how the tested car and somebody else touched, and whose fault it was."""
     found, name = incident.contact, incident.other
     assert found is not None
-    stands = found.speed <= STANDS < abs(found.other_speed)
-    is_hit = stands or found.face == "rear" or (found.face != "front" and found.other_face == "front")
+    moves = abs(found.other_speed) > STANDS
+    from_there = found.face == "rear" or (found.face != "front" and found.other_face == "front")
+    is_hit = moves and (found.speed <= STANDS or from_there)
     verb = f"was hit by {name}" if is_hit else f"hit {name}"
     own, other = FACES[found.face], FACES[found.other_face]
-    its = f"at {abs(found.other_speed) * 3.6:.0f} km/h" if abs(found.other_speed) > STANDS else "standing"
+    its = f"at {abs(found.other_speed) * 3.6:.0f} km/h" if moves else "standing"
     overlap = "" if found.overlap is None else f" and {percent(found.overlap)} overlap"
     return (
         f"{verb} {where} at {found.speed * 3.6:.0f} km/h: its {own} met the {other} of {name}, {its}, with "
