@@ -309,7 +309,7 @@ def touched(
 ) -> int:  # fmt: skip
     """Adds a row to ``entries`` for each lane that a box touches: the lane, the first and the last station
     that the box touches, its speed along the lane, and the number of the body. Returns the number of rows
-    then. A body that stands is not in a lane which a truck drives past it, nor behind where one ends."""
+    then. A body that stands beside the way of a truck is not in that lane, nor is one past the lane's end."""
     begin = count
     c, s = math.cos(heading), math.sin(heading)
     along = max(2, math.ceil(length / APART) + 1)
