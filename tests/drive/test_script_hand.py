@@ -444,6 +444,8 @@ REFUSED = {
     "ego v=50: brake 6 to=80": "is no faster than that; write speed 80",
     "ego: run_light; lights green": "runs a red light, and lights are green",
     "ego: brake 3; run_sign": r"no 'run_sign'; its parts, divided by ; \(actions of one by commas\)",
+    "ego: stop before crosswalk": "no word 'before' .* a place is for example before junction 1",
+    "roadworks close": "no word 'close' for a site; there are closed",
     "truck behind: overtake car 1; car ahead": "only the tested car can overtake 'car 1'",
 }
 

@@ -1,6 +1,7 @@
 """Where others are and which ways they go; checked on the polygons of the lanes, with shapely."""
 
 import math
+import re
 from functools import cache
 
 import numpy as np
@@ -389,3 +390,10 @@ def test_roadworks_for_which_a_road_has_no_place_are_refused(works, says):
     bare = world.changed(shoulder=0.0, scene=works)
     with pytest.raises(UsageError, match=says):
         works_rows(road, bare, 1)
+
+
+def test_who_waits_before_a_closed_lane_that_nothing_leads_past_has_not_failed():
+    """One lane, one way."""
+    run = perform("| oneway len=400 && ego v=40; roadworks closed s=120", 1, setup=Setup(reader="plan"))
+    assert run.outcome == "PASS"
+    assert re.search(r"stayed \d\.\d m behind cones \d+, which stands in its way", run.description)

@@ -209,14 +209,14 @@ AN_ACTION = language(_of_scene(Action, NUMBERS, side=SIDES), "manoeuvre")
 OF_ITSELF = _of_scene(Scene, NUMBERS, turn=WAYS, person=get_args(Person)) | {
     "lane": Part("lane"), "parks": Part("parked", {side: side for side in SIDES}),
 }  # fmt: skip
-ITSELF = language(OF_ITSELF, TESTED_CAR, lane=_lane_number)
+ITSELF = language(OF_ITSELF, "tested car", lane=_lane_number)
 A_LAND = language(_of_scene(Land, Land.model_fields, lie=get_args(Lie), side=SIDES), "landscape")
 SIGNAL = "lights"
 A_SIGNAL = language(_of_scene(Signal, NUMBERS, shows=tuple(SCENES["signals"]["rows"])), "state of lights")
 SLIPPERY = "slippery"
 A_PATCH = language(_of_scene(SlipperyPlace, SlipperyPlace.model_fields), "slippery place")
 WORKS = "roadworks"
-A_SITE = language(_of_scene(Roadworks, Roadworks.model_fields, kind=tuple(ROADWORKS), side=SIDES), WORKS)
+A_SITE = language(_of_scene(Roadworks, Roadworks.model_fields, kind=tuple(ROADWORKS), side=SIDES), "site")
 CLOCK = "clock"
 CONDITIONS: Mapping[str, tuple[str, str]] = {
     str(word): (field, str(word))
@@ -460,8 +460,8 @@ def _read_words(
             _set(fields, "count", read_amount(word[1:]))
         elif language.of:
             known = ", ".join(sorted((*language.words, *(f"{key}=" for key in language.keys))))
-            one = f"{'an' if language.of == TESTED_CAR else 'a'} {language.of}"
-            raise BriefError(f"a plan has no word '{word[:40]}' for {one}; there are {known}")
+            known += "; a place is for example before junction 1" * (word in ("before", "after", "in"))
+            raise BriefError(f"a plan has no word '{word[:40]}' for a {language.of}; there are {known}")
         else:
             raise BriefError(
                 f"a plan has no word '{word[:40]}' here; what is asked of the whole road stands behind |, "

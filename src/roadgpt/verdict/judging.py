@@ -253,7 +253,7 @@ def far_beyond(beyond: float) -> str:
 def _behind(case: Judged) -> str:
     """Returns in words behind whom of a scene the car stayed at the end; empty if the way was free."""
     others = case.drive.others
-    if others is None or not others.actors or not case.world.scene.actors:
+    if others is None or not others.actors or not (case.world.scene.actors or case.world.scene.roadworks):
         return ""
     gaps = case.measured.gap[-1]
     who = int(np.argmin(gaps))
