@@ -13,7 +13,8 @@ from roadgpt.errors import EditError
 
 
 def answer(*changes: str, unused: tuple[str, ...] = ()) -> str:
-    return json.dumps({"changes": changes, "unused": unused})
+    road, _, scene = "; ".join(changes).partition(" && ")
+    return json.dumps({"changes": [road], "scene": [scene] if scene else [], "unused": unused})
 
 
 def request(chat: FakeChat, words: str = "make the second turn sharper", rounds: int = 3) -> EditRequest:
@@ -64,6 +65,5 @@ def test_a_surface_is_read_with_the_model_too() -> None:
 def test_the_examples_in_the_prompt_are_plans(example: tuple[str, str]) -> None:
     told = json.loads(example[1])
     made = request(FakeChat(example[1]), example[0], rounds=1)
-    assert len(made.changes) + len(made.scene) == len(told["changes"])
-    assert bool(made.scene) == any(line.startswith("scene ") for line in told["changes"])
+    assert (len(made.changes), len(made.scene)) == (len(told["changes"]), len(told["scene"]))
     assert all(word in example[0] for word in told["unused"])

@@ -433,8 +433,7 @@ REFUSED = {
     "ego: brake 3 after car 1 brake": "needs another car that does 'brake'",
     "ego v=0: brake s=60": "stands until it brakes at 60 metres from the start, and so never comes there",
     "ego: pull_out": "pulls out, and is in its lane",
-    "ego: pull_over": "pulls over without end",
-    "ego: wait": "waits without end",
+    "ego: pull_over, pass": "pulls over without end",
     "ego: wait, creep": "waits without end",
     "car ahead: release": "a car has no 'release'",
     "ego: pass car 2; car ahead": "there is no 'car 2' to pass",
@@ -463,3 +462,31 @@ def test_a_simulator_that_heeds_no_script_refuses() -> None:
     road, world = straight("straight 300 && ego v=50: brake 3 to=20 s=60")
     with pytest.raises(UsageError, match="cannot make the tested car do what its scene tells"):
         simulate(road, world, "reference", simulator=Simple())  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("own", ["v=40: wait", "v=40: pull_over right", "parked right: wait"])
+def test_who_waits_at_last_stands_until_somebody_has_come_past(own: str) -> None:
+    drive = drive_of(f"straight 300 | lanes=2 oneway && ego {own}; car lane left gap=-120 v=40", "robot")
+    assert drive.ended == "over"
+    assert drive.others is not None
+    car, end = (
+        drive.others.at(drive.duration)[0],
+        np.array([drive[name][-1] for name in ("x", "y", "heading")]),
+    )
+    assert np.isnan(car[0]) or np.cos(end[2]) * (car[0] - end[0]) + np.sin(end[2]) * (car[1] - end[1]) > 4.7
+    assert at(drive, "speed", drive.duration) < 0.1
+
+
+def test_who_waits_at_last_stands_until_it_is_hit_as_told() -> None:
+    run = run_of("straight 300 && ego v=30: stop s=90, wait; truck behind v=8 hits=rear", "robot")
+    assert run.drive is not None
+    assert run.drive.ended == "collision"
+    assert at(run.drive, "speed", run.drive.duration) < 0.5
+    assert "its rear met the front of truck 1" in run.description
+
+
+def test_who_waits_alone_ends_its_drive() -> None:
+    drive = drive_of("straight 300 && ego v=36: stop 2 s=90, wait", "reference")
+    assert drive.ended == "over"
+    stands = drive["time"][drive["speed"] < 0.1]
+    assert 3.5 < stands[-1] - stands[0] < 6.0

@@ -10,9 +10,10 @@ method
 about a road, contradicts itself or asks for something impossible. Words that the reader did not understand
 are listed in ``Brief.unused``. All readers take the meanings of words from one table, in ``words.py``. A
 reader may also have a method ``alternatives(words, number, temperature)``, which returns several
-different readings of a vague description, the likeliest first."""
+different readings of a vague description, the likeliest first. One with ``takes_trials`` also takes a Trial:
+what that says of a reading, the reader heeds in another one."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any, Protocol, cast
 
@@ -51,6 +52,8 @@ __all__ = [
     "sentence",
 ]
 
+Trial = Callable[[Brief], Sequence[str]]
+"""Builds and drives what was read, and returns in sentences what of it cannot be, or does not happen."""
 PLAN = "plan"
 """The name of the plan reader. If a plan lists a roundabout or the like in ``beside(...)``, the road is built
 without it. If another reader lists a roundabout in ``Brief.beside``, ``read`` raises AnotherRoadError."""
@@ -76,6 +79,7 @@ def read(
     chat: ChatSettings | None = None,
     road_width: float = ROAD_WIDTH,
     is_map_fixed: bool = True,
+    trial: Trial | None = None,
 ) -> Brief:
     """Reads a description and returns what it asks for.
 
@@ -90,6 +94,7 @@ def read(
         chat: settings of the language model, for readers that use one; None takes the user's settings.
         road_width: width of the carriageway in metres.
         is_map_fixed: False if the map may be enlarged for the road, up to ``LARGEST_MAP``.
+        trial: for readers that ask a language model again if a test does not happen as told.
 
     Raises:
         NoRoomError: the map is too small for the road that is asked for; the message says what would fit on
@@ -102,8 +107,10 @@ def read(
         ChatError: the language model could not be asked."""
     words = words.encode("utf-8", "replace").decode()  # lone surrogates cannot be written to a file
     sized = None if reader == PLAN else said_map_size(words)
+    reads: Any = reader_of(reader, chat)
+    heeds = {"trial": trial} if trial and getattr(reads, "takes_trials", False) else {}
     try:
-        brief, too_much = reader_of(reader, chat).read(sized[1] if sized else words), None
+        brief, too_much = reads.read(sized[1] if sized else words, **heeds), None
     except TooMuchError as refusal:
         brief, too_much = refusal.brief, refusal
     if sized:

@@ -40,7 +40,7 @@ SIDE = re.compile("left(?!_hand)|right")
 OTHER_POLE = {"north": "south", "south": "north"}
 UPSIDE_DOWN = re.compile("north|south")
 OF_THE_WORDS = (
-    "words", "beside", "unused", "confidence", "other", "map_size", "lane_width", "limit", "scene",
+    "words", "beside", "unused", "confidence", "rounds", "other", "map_size", "lane_width", "limit", "scene",
 )  # fmt: skip
 """The fields of a Brief that require nothing of the shape of a road."""
 
@@ -170,6 +170,8 @@ class Brief(Frozen):
     ``surroundings``; that of a route holds for its roads without one."""
     scene: Scene = Scene()
     """Who else is on the road, and under which conditions; of a whole route, not of its roads."""
+    rounds: tuple[str, ...] = ()
+    """Why a language model was asked again, and once more, for another plan."""
     other: str = ""
     """The plan of the second likeliest reading, if the reader is not sure of this Brief; otherwise empty."""
 

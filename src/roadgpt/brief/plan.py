@@ -41,6 +41,7 @@ from roadgpt.brief.normal import BUMPS
 from roadgpt.brief.refusal import refused
 from roadgpt.brief.scene import (
     LAND_KINDS,
+    STRUCK,
     Action,
     Air,
     Land,
@@ -99,6 +100,8 @@ OF_WHOLE = {
 }
 """The fields of a Brief that can be asked of a whole route, with their names in plans; a map has none of the
 last three."""
+OF_THE_START = ("comes_from", "left_hand")
+"""Those that can stand with the first road of a route, too: it begins there."""
 INNER = "(starts|ends|beside)"
 ALIKE = "alike"
 """A flag of a road. In older plans, and for a whole route or map, the word stands in ``beside(...)``."""
@@ -230,6 +233,33 @@ MARK = re.compile(
 """A part of the route, or what another actor does, as in "after turn 1" and "with truck 1 brake"."""
 
 
+def _pattern_of_parts() -> str:
+    number = r"-?[0-9]+(\.[0-9]+)?"
+    amount = rf"(\.\.)?{number}(\.\.({number})?)?"
+    kinds, does = "|".join(ROAD_USERS), "|".join(MANEUVERS)
+    event = rf"(after|with) ({TESTED_CAR}|({kinds}) [1-9][0-9]?) ({does})"
+    place = "(after|before|in) (turn|junction|crosswalk) (-1|[1-9][0-9]?)"
+    hits = rf"hits=({'|'.join(STRUCK)}|({kinds}) [1-9][0-9]?)"
+
+    def words(language: Language, *more: str) -> str:
+        keys = (f"{key}={amount}" for key in language.keys if key != "hits")
+        return f"( ({'|'.join([*language.words, *keys, *more])}))*"
+
+    action = rf"({does})( ({kinds}) [1-9][0-9]?)?{words(AN_ACTION, amount, place, event)}"
+    actor = rf"({kinds}|{'|'.join(PLACES)}){words(AN_ACTOR, f'x{amount}', place, hits)}"
+    itself = f"{TESTED_CAR}{words(ITSELF, 'parked left', 'parked right')}"
+    flows = rf"oncoming ({'|'.join(FLOWS)}|none)|parked ({'|'.join(SIDES)})"
+    patches = f"{SIGNAL}{words(A_SIGNAL)}|{SLIPPERY}{words(A_PATCH)}|{WORKS}{words(A_SITE)}"
+    air = f"({'|'.join(WEATHER)})( {amount})?|{CLOCK} [0-9]{{1,2}}:[0-9]{{2}}|{'|'.join(CONDITIONS)}"
+    land = f"({'|'.join(LANDFORMS)}){words(A_LAND, f'x{amount}')}"
+    return f"^(({actor}|{itself})(: {action}(, {action})*)?|{flows}|{patches}|{air}|{land})$"
+
+
+SCENE_PART = _pattern_of_parts()
+"""The regular expression of a part of a scene, for servers that hold language models to one: who, where, what
+and with which numbers, in the words of the table."""
+
+
 def plan(brief: Brief) -> str:
     """Returns the plan of a Brief, without ``words``, ``unused``, ``confidence`` and ``other``."""
     is_usual = brief.surroundings is not None and brief.speed == USUAL[brief.surroundings]
@@ -327,6 +357,40 @@ def read_plan(line: str) -> Brief:
     return _made(Brief, fields, line)
 
 
+def objections(line: str) -> tuple[str, ...]:
+    """Returns all that is wrong with a plan, in sentences: with its parts, or else with the whole."""
+    route, _, scene = ("" if line.lstrip().startswith("!") else line).partition(SCENE)
+    roads, _, whole = re.sub(rf"\b{HALFWAY}\b", half_of_route(route), route).partition(WHOLE)
+    said: list[str] = []
+
+    def ask(read: Callable[[str], object], *texts: str) -> bool:
+        before = len(said)
+        for text in filter(str.strip, texts):
+            try:
+                read(text)
+            except BriefError as error:
+                said.append(str(error))
+        return len(said) > before
+
+    is_network = BETWEEN in roads or is_junction(roads)
+    for part in map(str.strip, [] if is_map(roads) else roads.split(BETWEEN)):
+        clauses, _, wishes = part.partition("|")
+        if is_junction(part):
+            ask(_read_junction, part)
+        else:
+            ask(_read_clause, *clauses.split(";"))
+            ask(lambda own: read_plan(f"| {own}"), wishes)
+    ask(_read_whole if is_network else lambda own: read_plan(f"| {own}"), whole)
+    for part in scene.split(";"):
+        head, _, actions = part.partition(":")
+        if ask(scene_fields, part):
+            of_part = said.pop()
+            said += [] if ask(scene_fields, head) | ask(read_action, *actions.split(",")) else [of_part]
+    if not said:
+        ask(read_plan, line)
+    return tuple(dict.fromkeys(said))
+
+
 def half_of_route(line: str) -> str:
     """Returns the lengths that are half of the route of a plan, such as "len=180..220"; "" if the plan does
     not give the length of the whole route as one number."""
@@ -350,9 +414,7 @@ def _read_network(line: str) -> Brief:
     roads = [""]
     for part in filter(None, map(str.strip, route.split(BETWEEN))):
         if is_junction(part):
-            kind, *words = part.split()
-            fields = _read_words({"kind": kind}, words, JUNCTION)
-            junctions.append(_made(JunctionClause, fields, part))
+            junctions.append(_read_junction(part))
             roads.append("")
         elif roads[-1]:
             raise BriefError(
@@ -363,8 +425,21 @@ def _read_network(line: str) -> Brief:
             roads[-1] = part
     if not junctions:
         raise BriefError(f"a plan with {BETWEEN} needs a junction, such as crossroads left")
-    stretches = tuple(map(read_plan, roads))
-    return _made(Brief, {"junctions": tuple(junctions), "stretches": stretches, **_read_whole(whole)}, line)
+    first, *others = map(read_plan, roads)
+    fields, at_start = _read_whole(whole), {name: getattr(first, name) for name in OF_THE_START}
+    for name, value in at_start.items():
+        if value and fields[name] not in (None, False, value):
+            raise BriefError(
+                f"a plan gives {OF_WHOLE[name]}= twice: '{value}' and '{fields[name]}'; give it once"
+            )
+        fields[name] = fields[name] or value
+    stretches = first.model_copy(update=dict.fromkeys(OF_THE_START)), *others
+    return _made(Brief, {"junctions": tuple(junctions), "stretches": stretches, **fields}, line)
+
+
+def _read_junction(text: str) -> JunctionClause:
+    kind, *words = text.split()
+    return _made(JunctionClause, _read_words({"kind": kind}, words, JUNCTION), text)
 
 
 def _read_whole(text: str) -> dict[str, object]:
@@ -561,7 +636,8 @@ def scene_fields(text: str) -> dict[str, object]:
             amount = {"amount": read_amount(words[0])} if words else dict[str, object]()
             _set(airs, first, _made(Air, {**dict(usual), **amount}, part))
         elif first == CLOCK:
-            if not re.fullmatch(r"([01]\d|2[0-3]):[0-5]\d", time := part.partition(" ")[2].strip()):
+            time = part.partition(" ")[2].strip().zfill(len("00:00"))
+            if not re.fullmatch(r"([01]\d|2[0-3]):[0-5]\d", time):
                 raise BriefError(f"'{part[:40]}' is no time; write for example {CLOCK} 14:15")
             _set(fields, CLOCK, time)
         elif first in CONDITIONS and not words:
@@ -581,7 +657,9 @@ def scene_fields(text: str) -> dict[str, object]:
 def _read_role(text: str) -> Role:
     head, _, rest = text.partition(":")
     fields: dict[str, object] = {}
-    head = re.sub(rf"\bhits=({'|'.join(ROAD_USERS)}) (?=\d)", r"hits=\1-", head)  # one word, as its others
+    told = re.findall(r"\bhits=\w+(?: \d+)?", text)  # also behind the colon
+    head, rest = (re.sub(r"\bhits=\w+(?: \d+)?", "", each) for each in (head, rest))
+    head = " ".join([head, *(each.replace(" ", "-") for each in told)])  # one word, as its others
     kind, *words = _without_mark(head, fields)
     if kind not in ROAD_USERS:
         kind, words = "car", [kind, *words]

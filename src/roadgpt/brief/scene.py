@@ -485,7 +485,7 @@ class Scene(Frozen):
             if action.whom and (action.whom not in there or action.what not in AROUND):
                 raise ValueError(f"there is no '{action.whom}' to {action.what}; name one of the scene")
             follows = self.actions[self.actions.index(action) + 1 :][:1]
-            is_open = not follows or not {*CUES} & follows[0].model_fields_set
+            is_open = bool(follows) and not {*CUES} & follows[0].model_fields_set
             if action.what in ("wait", "pull_over") and action.duration is None and is_open:
                 raise ValueError(
                     f"the tested car {MANEUVERS[action.what].said} without end; write {action.what} 5, or "
@@ -559,6 +559,11 @@ class Scene(Frozen):
     def stands(self) -> bool:
         """Whether the tested car stands at first."""
         return bool(self.parks) or (self.speed is not None and span(self.speed).hi == 0)
+
+    @property
+    def stays(self) -> bool:
+        """Whether the tested car stands at last, until all has happened."""
+        return any(each.what in ("wait", "pull_over") and not each.duration for each in self.actions[-1:])
 
     @property
     def lights(self) -> Signal | None:

@@ -2,14 +2,15 @@
 in the text that the model wrote.
 
 The schema has only the keywords that all servers accept: every field is required, no other fields are
-allowed, and patterns, lengths, limits and defaults are left out. The limits still hold, because every reply
-is validated against the pydantic model. Any field of a server's response may be missing or have the wrong
-type. Text around the JSON of the model is ignored: code fences, text before and after, and a model's
+allowed, and lengths, limits and defaults are left out; patterns of texts are for servers that take them. The
+limits still hold, because every reply is validated against the pydantic model. Any field of a server's
+response may be missing or have the wrong type. Text around the JSON of the model is ignored: code fences, text before and after, and a model's
 reasoning. NaN and infinities, keys that occur twice with different values, extreme nesting and extreme length
 are rejected. Nothing is evaluated."""
 
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -91,6 +92,7 @@ def _number(text: str) -> float:
     return found
 
 
+KEYWORDS = ("type", "enum", "description", "pattern")
 NESTED = 10  # levels of a schema; OpenAI allows 5 levels of objects
 
 
@@ -103,29 +105,29 @@ def fixed_description(text: str) -> ConfigDict:
     return ConfigDict(json_schema_extra={"description": text})
 
 
-def schema_of(model: type[BaseModel]) -> dict[str, Any]:
-    """Returns the flat JSON schema of a model. Raises TypeError if the model refers to itself or has objects
-    without named fields (a bug in the caller)."""
+def schema_of(model: type[BaseModel], patterns: bool = False) -> dict[str, Any]:
+    """Returns the flat JSON schema of a model, with or without the patterns of its texts. Raises TypeError if
+    the model refers to itself or has objects without named fields (a bug in the caller)."""
     whole = model.model_json_schema()
-    return _flat(whole, whole.get("$defs", {}), NESTED)
+    return _flat(whole, whole.get("$defs", {}), NESTED, KEYWORDS if patterns else KEYWORDS[:-1])
 
 
-def _flat(schema: dict[str, Any], named: dict[str, Any], levels: int) -> dict[str, Any]:
+def _flat(schema: dict[str, Any], named: dict[str, Any], levels: int, kept: Sequence[str]) -> dict[str, Any]:
     if "$ref" in schema:
         schema = named[schema["$ref"].rsplit("/", 1)[1]] | schema
     fields = schema.get("properties", {})
     if not levels or (schema.get("type") == "object" and not fields):
         raise TypeError("a language model needs named fields in every object, and no object in itself")
-    flat: dict[str, Any] = {key: schema[key] for key in ("type", "enum", "description") if key in schema}
+    flat: dict[str, Any] = {key: schema[key] for key in kept if key in schema}
     if "const" in schema:
         flat["enum"] = [schema["const"]]
     if "anyOf" in schema:
-        flat["anyOf"] = [_flat(one, named, levels - 1) for one in schema["anyOf"]]
+        flat["anyOf"] = [_flat(one, named, levels - 1, kept) for one in schema["anyOf"]]
     if fields:
-        flat["properties"] = {name: _flat(field, named, levels - 1) for name, field in fields.items()}
+        flat["properties"] = {name: _flat(field, named, levels - 1, kept) for name, field in fields.items()}
         flat |= {"required": list(fields), "additionalProperties": False}
     if "items" in schema:
-        flat["items"] = _flat(schema["items"], named, levels - 1)
+        flat["items"] = _flat(schema["items"], named, levels - 1, kept)
     return flat
 
 

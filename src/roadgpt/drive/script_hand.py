@@ -147,7 +147,8 @@ class ScriptHand:
         enters = any(self._line.from_road(way.line) < near for way in self.road.passages[:1])
         self._is_due = self._is_due or enters or bool(self._begun) or event == "now"
         before, self._away = self._away, abs(self._aside(view))
-        is_held = self._speed.v < HALTED and self._phases[:1] and self._phases[0].until == "speed"
+        phase = self._phases[0] if self._phases else None
+        is_held = phase and self._speed.v < HALTED and (phase.until == "speed" or phase.lasts == math.inf)
         is_done = self._begun == len(self._maneuvers) and (is_held or not self._phases)
         is_over = is_done and self._is_due and event == "past" and self._away - before < LEAVES * view.dt
         self._calm = self._calm + view.dt if is_over else 0.0
@@ -253,7 +254,7 @@ class ScriptHand:
         self._see(view)
         self._go_on(view)
         self._begin_in_time(view)
-        if self._has_event:
+        if self._has_event or self._world.scene.stays:
             self._watch(view)
         if self._runs_in and not self._is_due:
             return self._robot.steer(view), RUN_IN
@@ -460,7 +461,9 @@ class ScriptHand:
             else:
                 self._phases = [] if each.what == "release" else self._triggers.phases(each)
             rest = self._maneuvers[self._begun :]
-            is_waiting = bool(rest) and not rest[0].is_open and "duration" not in each.n
+            is_waiting = (
+                self._world.scene.stays if not rest else not rest[0].is_open and "duration" not in each.n
+            )
             if each.what in ("stop", "pull_over") and is_waiting:
                 self._phases.append(Phase(lasts=math.inf))
             if self._phases:

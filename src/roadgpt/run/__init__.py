@@ -12,7 +12,7 @@ import time
 import traceback
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -134,16 +134,29 @@ def drafted(
 
 def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Meter | None = None) -> Brief:
     """Returns the Brief that the setup's reader reads from the words. The Brief is checked against the size
-    of the world's map and the world's other limits."""
+    of the world's map and the world's other limits. What the test robot shows to be impossible, or not to
+    happen, goes back to a reader that asks a language model."""
     with counting(meter or Meter.of(setup.chat), "reading"):
         try:
             limits = (world.site.map_size, world.limits.min_radius, world.limits.max_grade)
-            fixed = world.given_map is not None
-            return read(words, setup.reader, *limits, setup.chat, world.section.road_width, fixed)
+            fixed, width = world.given_map is not None, world.section.road_width
+            trial = partial(_failing, world=world, drives=setup.drives)
+            return read(words, setup.reader, *limits, setup.chat, width, fixed, trial)
         except NoRoomError as error:
             from roadgpt.design.advice import no_room
 
             raise BriefError(no_room(error, world, failed_trial)) from error
+
+
+def _failing(brief: Brief, world: World, drives: bool) -> tuple[str, ...]:
+    """Returns in a sentence why a test of a Brief cannot be, or what of it does not happen with the test
+    robot, who does not react; nothing if it happens as told. It never depends on the driver under test."""
+    try:
+        run = perform(brief, 0, world, Setup(driver="robot", drives=drives))
+    except RoadGPTError as error:
+        return (str(error),)
+    is_told = run.outcome not in ("INVALID", "NOT TESTED", "ERROR")
+    return () if is_told else (f"built and driven by a robot: {run.description.removeprefix(REFUSED)}",)
 
 
 def prove(

@@ -6,7 +6,7 @@ from collections import Counter
 
 import numpy as np
 
-from roadgpt.brief.scene import HEAD_ON, LEAVES, MOST_MORE, Event
+from roadgpt.brief.scene import HEAD_ON, LEAVES, MOST_MORE, STRUCK, Event
 from roadgpt.geometry.boxes import corners, touch
 from roadgpt.language.table import MANEUVERS
 from roadgpt.network.line import SPACING, driven_line
@@ -148,7 +148,7 @@ class Script:
         """Returns the states of all actors STEP after ``time``. They slow down for others ahead in their
         lane, but not for the tested car, unless they overtake it. Who hits it from behind stops there."""
         seen = self._seen(car)
-        if self._stage.world.scene.is_test:
+        if self._stage.world.scene.is_test or self._stage.world.scene.stays:
             self._time, self._meets_in = time, self._to_meeting(seen)
         self._look(bodies, car)
         past = self._states() if self._stage.aims else np.empty((0, 5))
@@ -207,12 +207,14 @@ class Script:
 
     def _to_meeting(self, met: Met) -> float:
         """Returns in how many seconds the tested car, as fast as everybody is now, comes to the first one in
-        its path, or who comes there from a side, or one behind it comes to it; infinity if none does."""
+        its path, or who comes there from a side, or one behind it comes to it; infinity if none does. Who
+        comes past it counts, too, where it stands until all has happened."""
         boxes = self._way.boxes(self._states(), self._sizes)
         ahead, away, (half, wide) = boxes.along - met.s, boxes.t - met.t, boxes.reach
         comes = (ahead > 0) & (np.sign(away) * boxes.velocity[:, 1] < -STILL)
         closing = np.sign(ahead) * (met.v - boxes.velocity[:, 0])
-        closing = np.where(np.abs(away) < wide + met.width / 2, closing, np.where(comes, met.v, 0.0))
+        is_near = (np.abs(away) < wide + met.width / 2) | self._stage.world.scene.stays
+        closing = np.where(is_near, closing, np.where(comes, met.v, 0.0))
         gap = np.maximum(np.abs(ahead) - half - met.length / 2, 0.0)[closing > 0]
         return float((gap / closing[closing > 0]).min(initial=math.inf))
 
@@ -220,6 +222,9 @@ class Script:
     def event(self) -> Stretch:
         """See ``Traffic.event``."""
         later = LATER if self._time else math.inf
+        is_due = any(each.role.hits in STRUCK and each.hits is None for each in self._performers)
+        if is_due and self._stage.world.scene.stays:
+            return "before"
         if self._meets_in >= later and all(each.has_done for each in self._performers):
             return "past"
         acts = any(0 < time <= self._time for each in self._performers for time, _ in each.since.values())

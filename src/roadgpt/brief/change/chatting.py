@@ -12,7 +12,7 @@ from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.change.request import EditRequest, refuse_clashes
 from roadgpt.brief.change.spoken import spoken
 from roadgpt.brief.plan import SCENE
-from roadgpt.brief.readers.chat import MOST_PLAN, OTHERS, opening_of, said_in, told_in, until_valid
+from roadgpt.brief.readers.chat import MOST_PLAN, again, opening_of, said_in, told_in, until_valid
 from roadgpt.chat import ChatSettings, open_chat
 from roadgpt.chat.answer import fixed_description
 from roadgpt.errors import EditError, RoadGPTError
@@ -25,7 +25,8 @@ class ChangeAnswer(BaseModel):
 
     model_config = fixed_description("What the model is asked for.")
 
-    changes: list[str] = Field(description="The changes, one line each.")
+    changes: list[str] = Field(description="The changes of the road, one line each.")
+    scene: list[str] = Field(description="The changes of the scene, one line each.")
     unused: list[str] = Field(description="Words of the request that fit into none, as written.")
 
 
@@ -49,10 +50,10 @@ def request_by_chat(words: str, settings: ChatSettings, surface: str = "") -> Ed
 
 
 def _line(answer: ChangeAnswer) -> str:
-    scene = [line for line in answer.changes if OTHERS.match(line.strip())]
-    road = "; ".join(line for line in answer.changes if line not in scene)
-    return f"{road} {SCENE} {OTHERS.sub('', '; '.join(scene))}" if scene else road
+    road, scene = "; ".join(answer.changes), "; ".join(answer.scene)
+    return f"{road} {SCENE} {scene}" if scene else road
 
 
 def _objection(error: RoadGPTError, answer: ChangeAnswer) -> str:
-    return f"{error}. Write the plan again, for the request above."
+    del answer
+    return again([str(error)], "request")

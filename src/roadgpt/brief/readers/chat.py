@@ -1,58 +1,63 @@
 """The chat reader: asks a language model for the plan of a description, and checks it like any other plan.
 
-The model answers in the plan language of ``roadgpt.brief.plan``; every word of the answer is looked up and
-nothing is executed. If the answer is not a valid plan, the model is asked again, with a sentence that states
-the error."""
+The model answers in the plan language of ``roadgpt.brief.plan``, whose rules it is told from the table of the
+language; every word of the answer is looked up and nothing is executed. If the answer is not a valid plan, or
+what it tells cannot be built or does not happen, the model is asked again, with all that is wrong."""
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from itertools import groupby
 from pathlib import Path
 from string import Template
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from pydantic import BaseModel, Field
 
 from roadgpt.brief.feasible import check
-from roadgpt.brief.junctions import MAP
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
-from roadgpt.brief.plan import BETWEEN, JUNCTIONS, KINDS, SCENE, WHOLE, is_junction, is_map, read_plan
+from roadgpt.brief.plan import SCENE, SCENE_PART, objections, read_plan
+from roadgpt.brief.readers.model.mentions import OWN, mentions_in
 from roadgpt.brief.refusal import EXAMPLE, MOST_CHARACTERS
-from roadgpt.brief.scene import AROUND
+from roadgpt.brief.scene import AROUND, Role
 from roadgpt.chat import Chat, ChatSettings, Message, configured, open_chat
 from roadgpt.chat.answer import fixed_description
 from roadgpt.errors import BriefError, EditError, RoadGPTError
+from roadgpt.language.names import What
 from roadgpt.language.table import (
+    ANYWHERE,
     FLOWS,
+    LANDFORMS,
     LIGHTS,
     MANEUVERS,
+    MOVING,
     NUMBERS,
     OF_ITSELF,
     OF_OTHERS,
     PLACES,
     ROAD_USERS,
     ROADS,
+    SCENES,
     SURFACES,
     WEATHER,
-    ManeuverRow,
-)  # fmt: skip
+)
 from roadgpt.reading import read_text
 
-MOST_PLAN = 1000  # characters of a plan; the longest useful ones have a few hundred
+MOST_PLAN = 1500  # characters of a plan; the longest useful ones have a few hundred
 MOST_UNUSED = 40  # words
+ALONG = {*SCENES["sets"]["along"]}
 Answer = TypeVar("Answer", bound=BaseModel)
 Read = TypeVar("Read")
 
 
 def told_in(path: Path) -> tuple[str, tuple[tuple[str, str], ...]]:
-    """Returns the rules in a file, and the examples behind them: words, and the answer on the next line."""
+    """Returns the rules in a file, and the examples behind them: words, and the answer on the next line. The
+    examples are sent as turns of the conversation: small models follow them better than rules."""
     rules, _, examples = read_text(path).partition("---\n")
     lines = examples.splitlines()
     return rules, tuple(zip(lines[::2], lines[1::2], strict=True))
 
 
-# The examples are sent as turns of the conversation: small models follow them better than rules.
 def _or(names: Iterable[str]) -> str:
     *first, last = names
     return f"{', '.join(first)} or {last}"
@@ -60,36 +65,54 @@ def _or(names: Iterable[str]) -> str:
 
 def _rows() -> dict[str, str]:
     """Returns what the rules tell of the table of the language."""
-
-    def first_number(row: ManeuverRow) -> str:
-        return f" ({NUMBERS[row.numbers[0]].unit})" if row.numbers and row.usual else ""
-
     lone, sided = ([name for name, row in PLACES.items() if bool(row.side) == has] for has in (False, True))
-    airs = ((name, row, "mm/h" if row.falls else "metres of sight") for name, row in WEATHER.items())
+    airs = ((name, row.usual[0], "mm/h" if row.falls else "metres of sight") for name, row in WEATHER.items())
+    own = (name.join(["", " car 1"]) if name in AROUND else _action(name) for name in OF_ITSELF)
     return {
         "who": _or(ROAD_USERS),
         "lone": _or(lone),
         "sided": ", ".join(f"{name} ({PLACES[name].said})" for name in sided),
-        "actions": _or(f"{name}{first_number(MANEUVERS[name])}" for name in OF_OTHERS),
-        "own_actions": _or(f"{name} car 1" if name in AROUND else name for name in OF_ITSELF),
-        "sided_actions": ", ".join(name for name in OF_OTHERS if MANEUVERS[name].side),
+        "numbers": _by_place([*filter(NUMBERS.get, Role.model_fields)], NUMBERS, "where", _number),
+        "actions": _by_place(OF_OTHERS, MANEUVERS, "starts", _action),
+        "of_persons": _or(name for name in OF_OTHERS if {*MOVING} <= {*MANEUVERS[name].who}),
+        "own_actions": ", ".join(own),
         "flows": _or(FLOWS),
-        "weather": ", ".join(f"scene {name} {row.usual[0]:g} ({unit})" for name, row, unit in airs),
-        "lights": _or([*LIGHTS, *SURFACES]),
+        "weather": ", ".join(f"{name} {usual:g} ({unit})" for name, usual, unit in airs),
+        "lights": _or(LIGHTS),
+        "surfaces": _or(SURFACES),
+        "land": _or(LANDFORMS),
     }
+
+
+def _number(name: str) -> str:
+    return f"{NUMBERS[name].key}= ({NUMBERS[name].said.format('..')})"
+
+
+def _action(name: What) -> str:
+    row = MANEUVERS[name]
+    keys = [NUMBERS[each].key for each in row.numbers]
+    usual = "" if row.usual is None else f" (usually {row.usual:g})"
+    first = [f"[{key}]{usual}" for key in keys[:1]]
+    return " ".join([name, *["left|right"] * row.side, *first, *(f"{key}=" for key in keys[1:])])
+
+
+def _by_place(names: Sequence[Any], rows: Any, places: str, said: Callable[[Any], str]) -> str:
+    """Returns what the rows say, those for the same places on one line, the widest first."""
+
+    def where(name: Any) -> tuple[int, str]:
+        those = getattr(rows[name], places)
+        along = ["along"] * ({*those} >= ALONG)
+        named = [*along, *(each for each in those if not (along and each in ALONG))]
+        return -len(those), "anywhere" if len(those) == len(ANYWHERE) else ", ".join(named)
+
+    lines = groupby(sorted(names, key=where), where)
+    return "\n".join(f"  {of}: {', '.join(map(said, those))}" for (_, of), those in lines)
 
 
 RULES, EXAMPLES = told_in(Path(__file__).with_name("chat_rules.txt"))
 RULES = Template(RULES).substitute(_rows())
-ROAD = "road"
-"""The first word of a line of "along" that holds for a whole road."""
-OTHERS = re.compile(r"\bscene\b[\s:]*")
-"""The first word of a line of "along" that is a part of the scene."""
-ON_LINES = (
-    " In your answer, what a plan has behind | is a line that begins with road, and what it has behind || is "
-    'under "road"'
-)
 
+WORD = re.compile(r"(?<![\w=+-])[\w-]+(?![\w=-])")
 # Words that models write instead of those of the plan language, in spite of the rules.
 SAID = {
     name.lower().replace(" ", "_"): kind
@@ -111,36 +134,58 @@ class PlanAnswer(BaseModel):
 
     model_config = fixed_description("What the model is asked for.")
 
-    along: list[str] = Field(description="What comes along the road, in driving order.")
-    road: str = Field(description="What holds for the whole road.")
-    unused: list[str] = Field(description="Words about the road that fit into neither, as written.")
+    road: str = Field(description="What the tested car drives on.")
+    scene: list[str] = Field(
+        description="Who else is there, what happens, and under which conditions.",
+        json_schema_extra={"items": {"type": "string", "pattern": SCENE_PART}},
+    )
+    unused: list[str] = Field(description="Words about road or scene that fit into neither, as written.")
 
 
 class ChatReader:
     """Reads descriptions by asking a language model."""
 
+    takes_trials = True
+
     def __init__(self, settings: ChatSettings | None = None, chat: Chat | None = None) -> None:
         self._settings = settings or configured()
         self._chat = chat or open_chat(self._settings)
 
-    def read(self, words: str) -> Brief:
-        """Returns the Brief of a description, in normal form; raises BriefError if the description is empty
-        or too long, or the model writes no valid plan for it, and ChatError if it cannot be asked."""
+    def read(self, words: str, trial: Callable[[Brief], Sequence[str]] | None = None) -> Brief:
+        """Returns the Brief of a description, in normal form. What ``trial`` says of it goes back to the
+        model, too; where that has no better plan, the Brief of the last valid one is returned.
+
+        Raises BriefError if the description is empty or too long, or the model writes no valid plan for it,
+        and ChatError if it cannot be asked."""
         if not words.strip():
             raise BriefError(f"the description is empty; {EXAMPLE}")
         if len(words) > MOST_CHARACTERS:
             raise BriefError(
                 f"the description has {len(words):,} characters; {MOST_CHARACTERS:,} is the limit: shorten it"
             )
+        told, valid = list[str](), list[Brief]()
+
+        def read(answer: PlanAnswer) -> Brief:
+            valid.append(brief := _brief(answer, words))
+            is_last = len(told) + 1 >= self._settings.rounds
+            said = () if is_last else (*lost(brief, words), *(trial(brief) if trial else ()))
+            if said:
+                raise BriefError("\n".join(said))
+            return brief
+
+        def objection(error: RoadGPTError, answer: PlanAnswer) -> str:
+            said = objections(_line(answer)) or str(error).split("\n")
+            told.append("; ".join(said))
+            return again(said, "description")
+
         opening = opening_of(RULES, EXAMPLES, words)
-        return until_valid(
-            self._chat,
-            opening,
-            PlanAnswer,
-            self._settings.rounds,
-            lambda data: _brief(data, words),
-            _objection,
-        )
+        try:
+            brief = until_valid(self._chat, opening, PlanAnswer, self._settings.rounds, read, objection)
+        except BriefError:
+            if not valid:
+                raise
+            brief = valid[-1]
+        return brief.model_copy(update={"rounds": tuple(told)})
 
 
 def opening_of(rules: str, examples: Sequence[tuple[str, str]], words: str) -> list[Message]:
@@ -174,9 +219,31 @@ def until_valid(
     raise ValueError("a model is asked at least once")
 
 
+def again(said: Sequence[str], what: str) -> str:
+    """Returns the message that asks for another answer, because of objections to the one before."""
+    rows = "".join(f"- {each}\n" for each in said)
+    return f"This plan cannot be used as it is:\n{rows}Write the whole answer again, for the {what} above."
+
+
+def lost(brief: Brief, words: str) -> list[str]:
+    """Returns sentences on the road users and the weather that the words name and a Brief has not, neither in
+    its scene nor among its unused words. Cars are left out: the tested car is one."""
+    there = {*(role.kind for role in brief.scene.actors), *(air.kind for air in brief.scene.weather), "car"}
+    there |= {action.whom.split()[0] for action in brief.scene.actions if action.whom}
+    named = [each for each in mentions_in(words) if not each.is_denied and each.before not in OWN]
+    said = {each.name: words[each.start : each.end] for each in named if each.name not in there}
+    unused = " ".join(brief.unused).lower()
+    return [
+        f"the description says '{word}', and the scene has no {name}: add it, or put the word under 'unused' "
+        "if it is nobody and nothing there"
+        for name, word in said.items()
+        if word.lower() not in unused
+    ]
+
+
 def _brief(answer: PlanAnswer, words: str) -> Brief:
     line = _line(answer)
-    if not line.strip("|/ ") or len(line) > MOST_PLAN:
+    if not line.strip("|/& ") or len(line) > MOST_PLAN:
         start = " ".join(words.split())[:40]
         raise BriefError(f"no road could be read out of '{start}'; {EXAMPLE}")
     brief = read_plan(line)
@@ -187,55 +254,11 @@ def _brief(answer: PlanAnswer, words: str) -> Brief:
     return normal(brief).model_copy(update=told)
 
 
-def _objection(error: RoadGPTError, answer: PlanAnswer) -> str:
-    where = ON_LINES if "|" in str(error) and any(map(is_junction, _things(answer))) else ""
-    return f"{error}.{where and f'{where}.'} Write the plan again, for the description above."
-
-
 def _line(answer: PlanAnswer) -> str:
-    whole, _, scene = answer.road.partition(SCENE)
-    scene = "; ".join([*(line for line in answer.along if OTHERS.match(line.strip())), scene])
-    said = re.sub(r"\w+", lambda word: SAID_OF_OTHERS.get(word[0].lower(), word[0]), OTHERS.sub("", scene))
-    line = _road_line([*_things(answer)], _in_our_words(whole))
-    return f"{line} {SCENE} {said}" if said.strip("; ") else line
-
-
-def _road_line(things: list[str], whole: str) -> str:
-    if things and is_map(things[0]):
-        return f"{'; '.join(things)} {WHOLE} {whole}"
-    if not any(map(is_junction, things)):
-        return _road([*things, f"{ROAD} {whole}"])
-    parts = [
-        part
-        for is_place, lines in groupby(things, is_junction)
-        for part in (lines if is_place else (_road([*lines]),))
-    ]
-    return f"{f' {BETWEEN} '.join(parts)} {WHOLE} {whole}"
-
-
-def _things(answer: PlanAnswer) -> Iterator[str]:
-    """Yields the lines of an answer in the words of plans; several on one line are taken apart."""
-    for line in answer.along:
-        if OTHERS.match(line.strip()):
-            continue
-        yield from filter(None, map(_in_our_words, re.split(rf";|{BETWEEN}", line)))
-
-
-def _road(lines: Sequence[str]) -> str:
-    clauses = [line for line in lines if line.split()[0] != ROAD]
-    wishes = [line.removeprefix(ROAD) for line in lines if line.split()[0] == ROAD]
-    return f"{'; '.join(clauses)} | {' '.join(wishes)}"
-
-
-def _in_our_words(text: str) -> str:
-    """Returns one line of a plan with its kind first and common synonyms replaced; other words stay."""
-    words = [SAID.get(word.lower(), word) for word in text.replace("|", " ").replace(",", " ").split()]
-    if words[:1] in ([MAP], [ROAD]):
-        return " ".join(words)
-    # the way straight on at a junction is not a straight
-    kinds = JUNCTIONS if any(word in JUNCTIONS for word in words) else KINDS
-    kind = [word for word in words if word in kinds and "(" not in text][:1]
-    return " ".join([*kind, *(word for word in words if word not in kind)])
+    """Returns the plan of an answer, with common synonyms in the words of plans."""
+    road = WORD.sub(lambda word: SAID.get(word[0].lower(), word[0]), answer.road)
+    scene = WORD.sub(lambda word: SAID_OF_OTHERS.get(word[0].lower(), word[0]), "; ".join(answer.scene))
+    return f"{road} {SCENE} {scene}" if scene.strip("; ") else road
 
 
 def said_in(words: str, unused: Sequence[str]) -> tuple[str, ...]:

@@ -3,9 +3,11 @@
 from roadgpt.brief.feasible import check
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import STRAIGHT
-from roadgpt.brief.plan import read_plan
+from roadgpt.brief.plan import objections, read_plan
 from roadgpt.errors import BriefError
 from roadgpt.language.table import PARTS
+
+MANY = 2
 
 
 class PlanReader:
@@ -15,10 +17,16 @@ class PlanReader:
         """Returns the Brief that a plan describes.
 
         Raises:
-            BriefError: the plan is empty, has an unknown word, or contradicts itself."""
+            BriefError: the plan is empty, has an unknown word, or contradicts itself; the message says all
+                that is wrong."""
         if not words.strip():
             raise BriefError("the plan is empty; write for example 'turn left 90 r30; straight 40'")
-        brief, parts = read_plan(words), PARTS["clause"]
+        try:
+            brief, parts = read_plan(words), PARTS["clause"]
+        except BriefError:
+            if len(said := objections(words)) < MANY:
+                raise
+            raise BriefError("\n- ".join([f"{len(said)} things are wrong with the plan:", *said])) from None
         for clause in filter(None, (*brief.clauses, brief.starts, brief.ends)):
             other = "turns" if clause.kind in STRAIGHT else "straights"
             unsuited = {field for field in clause.model_fields_set & parts.keys() if parts[field].of == other}

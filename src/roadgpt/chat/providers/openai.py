@@ -33,6 +33,8 @@ class ServerQuirks:
     """Names that the server may use for the parameter that limits the length of a reply; the first is
     tried first."""
     takes_schema: bool = True
+    takes_patterns: bool = True
+    """Whether texts in a schema may have to fit a regular expression."""
     takes_temperature: bool = True
     unusable: int = 0
     """How many replies in a row did not fit the schema that was sent."""
@@ -100,6 +102,9 @@ class OpenAI:
                     continue
                 if not (by_schema and _is_about_format(fault)):
                     raise ChatError(fault.sentence) from None
+                if quirks.takes_patterns and schema and schema_of(schema, True) != schema_of(schema):
+                    quirks.takes_patterns = False
+                    continue
                 by_schema, is_refused = False, True
             except NotReadableError as error:
                 why = str(error)
@@ -137,7 +142,7 @@ class OpenAI:
     def _exchange(
         self, messages: Sequence[Message], schema: type[BaseModel] | None, by_schema: bool
     ) -> Answer:
-        form = None if schema is None else schema_of(schema)
+        form = None if schema is None else schema_of(schema, by_schema and self._quirks.takes_patterns)
         told = list(messages)
         if form is not None and not by_schema:
             text = "Answer with one JSON object and nothing else. It must fit this JSON schema, with every "

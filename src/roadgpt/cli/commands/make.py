@@ -174,6 +174,7 @@ def all_remarks(brief: "Brief", world: "World", given: "World") -> tuple[str, ..
     open_ = brief.model_copy(update={"beside": tuple(each for each in brief.beside if each not in is_set)})
     site, of_friction = world.site, (world.site.friction, world.scene.surfaces, "friction" in is_set)
     of_words = remarks(open_, site.map_size, *of_friction)
+    of_words += tuple(f"the language model was asked again: {said}" for said in brief.rounds)
     return tuple(dict.fromkeys((*of_words, *world_remarks(brief, given, world))))  # both tell the surface
 
 
