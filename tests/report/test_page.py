@@ -11,18 +11,19 @@ from typing import get_args
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
 from matplotlib.image import imread
+from numpy.typing import NDArray
 
 from roadgpt.campaign.columns import bounds_of_columns
 from roadgpt.cli.screen import COLOURS
-from roadgpt.drive import COLUMNS, Box, Columns, Drive
 from roadgpt.errors import RoadGPTError
-from roadgpt.report.canvas import OUTCOMES
+from roadgpt.report.canvas import OUTCOMES, VERMILLION
 from roadgpt.report.chapters.roads import MAPS, feature_map
 from roadgpt.report.overview import Thumbnail
 from roadgpt.report.page import STYLE, csv_of, html_of, latex_of, write
 from roadgpt.report.page.charts import AxisRange, Share, bars, forest, heat, is_map, lines, palette
-from roadgpt.report.page.maps import draw_site, gallery, site_of
+from roadgpt.report.page.maps import close_up, gallery
 from roadgpt.report.page.model import (
     Cards,
     Details,
@@ -35,8 +36,9 @@ from roadgpt.report.page.model import (
     cell,
     linked,
 )
-from roadgpt.road import CrossSection, Design, Road, Segment, World, build
-from roadgpt.run import Outcome
+from roadgpt.report.plan_view import ASPHALT, PAINT
+from roadgpt.road import CrossSection, Road, World
+from roadgpt.run import Outcome, Setup, prove
 
 NASTY = "<script>alert(1)</script> & \"100 %\" | $x_1$ \\ {y} 'z'"
 TABLE = Table(
@@ -289,35 +291,38 @@ def test_a_map_that_shows_nothing_is_none(filled: list[float], is_one: bool) -> 
     assert len(figures) == is_one
 
 
-def test_the_place_of_a_failure_is_to_scale_and_the_way_there_leads_up() -> None:
-    """A car on a straight to the east: its way is drawn upwards, in the right lane, 240 px for 52 m."""
-    straight = Segment(distance=120.0, direction="straight")
-    road = build(Design(starting_point=(20, 100, 0), theta=0, segments=(straight,)))
-    s = np.linspace(2.0, 70.0, 500)
-    columns = {name: np.zeros(len(s)) for name in COLUMNS} | {"s": s, "x": 20 + s, "y": np.full(len(s), 98.0)}
-    drive = Drive("nobody", "nothing", 0, Columns(columns), "out_of_lane", Box(4.0, 2.0))
-    found = site_of(road, World(), drive, 70.0)
-    picture = ET.fromstring(draw_site(found, "a place"))
-    (way,) = [e for e in picture.iter("{http://www.w3.org/2000/svg}polyline") if "s0" in e.get("stroke", "")]
-    points = np.array([pair.split(",") for pair in (way.get("points") or "").split()], float)
-    middle = 240 / 2
-    assert np.abs(points[:, 0] - middle).max() < 0.01, "the middle of the lane is the middle of the picture"
-    assert (np.diff(points[:, 1]) < 0).all(), "it goes up"
-    assert points[-1, 1] == pytest.approx(middle - 8 * 240 / 52, abs=1.0)
-    assert points[0, 1] - points[-1, 1] == pytest.approx(60 * 240 / 52, rel=0.02)
-    polygons = [e.get("points") or "" for e in picture.iter("{http://www.w3.org/2000/svg}polygon")]
-    car = np.array([pair.split(",") for pair in polygons[-1].split()], float)
-    assert np.ptp(car, axis=0) == pytest.approx(np.array([2.0, 4.0]) * 240 / 52, abs=0.02)
+def shown_in(svg: str) -> NDArray[np.int_]:
+    """The pixels of the picture in an svg element, as bytes."""
+    data = re.search(r"base64,([^\"]+)", svg)
+    assert data is not None
+    return np.rint(255 * imread(io.BytesIO(base64.b64decode(data[1])))[..., :3]).astype(int)
 
 
-def test_the_site_of_a_failure_shows_the_markings_of_the_road_s_own_lanes() -> None:
-    """A road with 2+1 lanes: a solid line between the directions, a broken one 3 m to its right."""
+def like(pixels: NDArray[np.int_], colour: str) -> NDArray[np.bool_]:
+    return np.asarray((np.abs(pixels - 255 * np.array(to_rgb(colour))) < 12).all(axis=-1))
+
+
+def test_the_place_of_a_failure_is_to_scale_with_the_road_s_own_lanes() -> None:
+    """A road to the east with 2+1 lanes of 3 m; the middle of the picture is that of the outer right lane."""
     road = Road.through([(20, 60), (80, 60), (140, 60), (200, 60)])
-    site = site_of(road, World(section=CrossSection(lanes="2+1", lane_width=3.0)), None, 90.0)
-    assert [is_broken for _, is_broken in site.lines] == [False, False, True, False]
-    assert [float(line[:, 1].mean()) for line, _ in site.lines] == pytest.approx([63.0, 60.0, 57.0, 54.0])
-    assert np.ptp(site.rings[0][:, 1]) == pytest.approx(9.0)
-    usual = site_of(road, World(), None, 90.0)
-    assert [is_broken for _, is_broken in usual.lines] == [False, True, False]
-    for each in (site, usual):
-        assert draw_site(each, "x").count("stroke-dasharray") == 1
+    world = World(section=CrossSection(lanes="2+1", lane_width=3.0))
+    run = prove(road, 1, world, Setup(drives=False))
+    picture = shown_in(close_up(run, 90.0, "a place"))
+    per_metre = len(picture) / 52.0
+    dark = like(picture[:, int(30 * per_metre)], ASPHALT) | like(picture[:, int(30 * per_metre)], PAINT)
+    rows = np.flatnonzero(dark) / per_metre  # m from the northern border
+    middle = float(world.profile_of(road).middle(90.0))
+    assert rows.min() == pytest.approx(26 - (3.0 - middle), abs=0.4)
+    assert rows.max() == pytest.approx(26 + (middle + 6.0), abs=0.4)
+
+
+def test_the_place_of_a_failure_has_the_car_a_cross_and_its_name() -> None:
+    road = Road.through([(20, 60), (80, 60), (110, 62), (112, 92), (112, 150)])
+    run = prove(road, 1, World().changed(friction=0.3), despite_findings=True)
+    assert run.verdict is not None
+    assert run.verdict.at_s is not None
+    made = close_up(run, run.verdict.at_s, 'it "failed"')
+    assert ET.fromstring(made).get("aria-label") == 'it "failed"'
+    where = np.argwhere(like(shown_in(made), VERMILLION))
+    assert len(where) > 20
+    assert np.abs(where.mean(axis=0) / len(shown_in(made)) - 0.5).max() < 0.1

@@ -15,6 +15,7 @@ No tool other than the game can check such files; ``roadgpt doctor beamng`` load
 
 import json
 import re
+import tomllib
 import uuid
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -25,12 +26,14 @@ import numpy as np
 
 from roadgpt.export.ego import Poses
 from roadgpt.geometry.curve import Array
+from roadgpt.reading import read_text
 from roadgpt.road import Road, World
 from roadgpt.road.profile import DASH, GAP
 from roadgpt_beamng.level.roads import GOAL, OWN, LevelRoad, Strip, level_road
 from roadgpt_beamng.level.terrain import write_terrain
 
 Item = dict[str, Any]
+CONSTANTS: dict[str, Item] = tomllib.loads(read_text(Path(__file__).with_name("constants.toml")))
 # Arbitrary but fixed, so that ids are always the same.
 NAMESPACE = uuid.UUID("6f1d2c0e-5b0a-5c39-9d3e-0f3a52b1c7aa")
 ABOVE_GROUND = 0.5  # m above the road at which a car is put down
@@ -72,12 +75,18 @@ def write_level(road: Road, levels: Path, name: str, world: World, title: str = 
     ``level_name`` returned; ``title`` is the title in the game, or empty to use ``name``."""
     scene = level_road(road, world, SEED)
     title = title or name
-    about, group = _scenario(name, title)
+    drive = "scenarios/drive/drive.prefab.json"
+    about = {"name": title, "lapConfig": [GOAL], "prefabs": [f"levels/{name}/{drive}"]}
     written = {
         "info.json": _json(_info(name, title, world)),
         "main.materials.json": _json(_materials(world)),
-        "scenarios/drive/drive.json": _json([about]),
-        "scenarios/drive/drive.prefab.json": _one_per_line([_car(name, scene, MODEL), *group]),
+        "scenarios/drive/drive.json": _json([CONSTANTS["drive"] | about]),
+        drive: _one_per_line(
+            [
+                _object(name, "ego", "BeamNGVehicle", "drive_group", **_start(scene), jBeam=MODEL),
+                _object(name, "drive_group", "SimGroup", ""),
+            ]
+        ),
     }
     for folder, objects in items(name, scene, world).items():
         written[f"main/{folder}/items.level.json"] = _one_per_line(objects)
@@ -112,7 +121,7 @@ def items(name: str, scene: LevelRoad, world: World) -> Mapping[str, Sequence[It
 
 def _object(level: str, name: str, kind: str, parent: str, **fields: Any) -> Item:
     given = {"name": name, "class": kind, "persistentId": str(uuid.uuid5(NAMESPACE, f"{level}/{name}"))}
-    return {**given, **({"__parent": parent} if parent else {}), **fields}
+    return {**given, **({"__parent": parent} if parent else {}), **CONSTANTS.get(kind, {}), **fields}
 
 
 def _surroundings(level: str, world: World, height: float) -> list[Item]:
@@ -120,12 +129,10 @@ def _surroundings(level: str, world: World, height: float) -> list[Item]:
     half = world.site.map_size / 2
     ground = [half, half, round(height, DECIMALS)]
     return [
-        _object(level, "level_info", "LevelInfo", group, gravity=-9.81, visibleDistance=4000, nearClip=0.1),
-        _object(level, "tod", "TimeOfDay", group, time=0.1, startTime=0.1, play=False),
-        _object(level, "sky", "ScatterSky", group, skyBrightness=40, shadowDistance=1000),
-        _object(
-            level, "ground", "GroundPlane", group, position=ground, material="roadgpt_grass", squareSize=128
-        ),
+        _object(level, "level_info", "LevelInfo", group),
+        _object(level, "tod", "TimeOfDay", group),
+        _object(level, "sky", "ScatterSky", group),
+        _object(level, "ground", "GroundPlane", group, position=ground),
     ]
 
 
@@ -149,51 +156,24 @@ def _dashes(strip: Strip) -> list[Strip]:
 
 def _strip(level: str, strip: Strip) -> Item:
     nodes = _rows(strip.nodes)
-    place = nodes[0][:3]
+    kind, fields = "DecalRoad", Item(position=nodes[0][:3])
     if strip.is_mesh:
-        vertical: list[list[float]] = [[0, 0, 1]] * len(nodes)
-        upwards = vertical if strip.normals is None else _rows(strip.normals)
-        return _object(
-            level,
-            strip.name,
-            "MeshRoad",
-            "roads",
-            position=place,
-            topMaterial=strip.material,
-            bottomMaterial=strip.material,
-            sideMaterial=strip.material,
-            textureLength=5,
-            breakAngle=3,
-            widthSubdivisions=0,
-            nodes=[[*node, *up] for node, up in zip(nodes, upwards, strict=True)],
-        )
-    return _object(
-        level,
-        strip.name,
-        "DecalRoad",
-        "roads",
-        position=place,
-        material=strip.material,
-        drivability=strip.drivability,
-        improvedSpline=True,
-        overObjects=True,
-        breakAngle=3,
-        detail=0.1,
-        distanceFade=[1000, 1000],
-        renderPriority=strip.priority,
-        textureLength=5,
-        zBias=0,
-        **({"oneWay": True} if strip.is_one_way else {}),
-        nodes=nodes,
-    )
+        upwards = None if strip.normals is None else _rows(strip.normals)
+        nodes = [[*node, *(upwards[i] if upwards else (0, 0, 1))] for i, node in enumerate(nodes)]
+        kind = "MeshRoad"
+        fields |= dict.fromkeys(("topMaterial", "bottomMaterial", "sideMaterial"), strip.material)
+    else:
+        fields |= {"material": strip.material, "drivability": strip.drivability}
+        fields |= {"renderPriority": strip.priority, **({"oneWay": True} if strip.is_one_way else {})}
+    return _object(level, strip.name, kind, "roads", **fields, nodes=nodes)
 
 
 def _player(level: str, scene: LevelRoad) -> list[Item]:
     start = _start(scene)
     goal = scene.goal.round(DECIMALS).tolist()
     return [
-        _object(level, "spawn", "SpawnSphere", "player", **start, radius=1, sphereWeight=1),
-        _object(level, GOAL, "BeamNGWaypoint", "player", position=goal, scale=[4, 4, 4], drawDebug="0"),
+        _object(level, "spawn", "SpawnSphere", "player", **start),
+        _object(level, GOAL, "BeamNGWaypoint", "player", position=goal),
     ]
 
 
@@ -240,59 +220,17 @@ def _material(name: str, colour: tuple[float, float, float], model: str) -> Item
         "persistentId": str(uuid.uuid5(NAMESPACE, f"material/{name}")),
         "Stages": [stage, {}, {}, {}],
         "groundType": model,
-        "materialTag0": "RoadAndPath",
         "translucent": is_decal,
         "translucentZWrite": is_decal,
-        "version": 1.5,
+        **CONSTANTS["Material"],
     }
 
 
 def _info(name: str, title: str, world: World) -> Item:
     side = int(np.ceil(world.site.map_size))
-    return {
-        "title": title,
-        "description": "A road to be driven, as RoadGPT made it.",
-        "authors": "RoadGPT",
-        "size": [side, side],
-        "biome": "Grass",
-        "previews": [],
-        "defaultSpawnPointName": "spawn",
-        "spawnPoints": [{"objectname": "spawn", "translationId": title, "previews": []}],
-        "isAuxiliary": False,
-        "levelName": name,
-    }
-
-
-def _scenario(name: str, title: str) -> tuple[Item, list[Item]]:
-    """Returns the scenario file, in which the car drives from start to goal, and the objects of its prefab
-    file."""
-    path = f"levels/{name}/scenarios/drive/drive.prefab.json"
-    about = {
-        "name": title,
-        "description": "Keep to the right lane until the end of the road.",
-        "difficulty": 0,
-        "authors": "RoadGPT",
-        "lapConfig": [GOAL],
-        "forceNoCountDown": True,
-        "vehicles": {"ego": {"playerUsable": True, "startFocus": True}},
-        "prefabs": [path],
-    }
-    return about, [_object(name, "drive_group", "SimGroup", "")]
-
-
-def _car(name: str, scene: LevelRoad, model: str) -> Item:
-    """Returns the car at the start of the road, as an object for a prefab file."""
-    return _object(
-        name,
-        "ego",
-        "BeamNGVehicle",
-        "drive_group",
-        **_start(scene),
-        dataBlock="default_vehicle",
-        jBeam=model,
-        autoEnterVehicle="false",
-        spawnAutoplace="false",
-    )
+    spawn = {"objectname": "spawn", "translationId": title, "previews": []}
+    own = {"title": title, "size": [side, side], "spawnPoints": [spawn], "levelName": name}
+    return CONSTANTS["info"] | own
 
 
 def _one_per_line(objects: Sequence[Item]) -> str:

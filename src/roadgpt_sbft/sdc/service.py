@@ -3,10 +3,11 @@
 import logging
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import Any
 
 import grpc
-from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+from google.protobuf import descriptor_pb2, descriptor_pool, message_factory, text_format
 
 from roadgpt.errors import UsageError
 from roadgpt_sbft.sdc.risk import LINE_ONLY, RiskFeatures, fit_model, order, risk_features
@@ -16,34 +17,7 @@ log = logging.getLogger(__name__)
 NAME = "RoadGPT"
 MOST_OUTCOMES = 5000  # known outcomes that are used; they take about 6 s of processor time
 WORKERS = 4
-FILE = "competition.proto"
 SERVICE = "CompetitionTool"
-Kind = descriptor_pb2.FieldDescriptorProto
-
-MESSAGES: dict[str, tuple[tuple[str, int | str, bool], ...]] = {
-    "Empty": (),
-    "NameReply": (("name", Kind.TYPE_STRING, False),),
-    "RoadPoint": (
-        ("sequenceNumber", Kind.TYPE_INT64, False),
-        ("x", Kind.TYPE_FLOAT, False),
-        ("y", Kind.TYPE_FLOAT, False),
-    ),
-    "SDCTestCase": (("testId", Kind.TYPE_STRING, False), ("roadPoints", "RoadPoint", True)),
-    "Oracle": (("testCase", "SDCTestCase", False), ("hasFailed", Kind.TYPE_BOOL, False)),
-    "InitializationReply": (("ok", Kind.TYPE_BOOL, False),),
-    "SelectionReply": (("testId", Kind.TYPE_STRING, False),),
-    "PrioritizationReply": (("testId", Kind.TYPE_STRING, False),),
-}
-"""For each message, its fields in the order of their numbers: (name, scalar type or name of a message, is
-repeated)."""
-
-METHODS = {
-    "Name": ("Empty", False, "NameReply", False),
-    "Initialize": ("Oracle", True, "InitializationReply", False),
-    "Select": ("SDCTestCase", True, "SelectionReply", True),
-    "Prioritize": ("SDCTestCase", True, "PrioritizationReply", True),
-}
-"""For each RPC: (request, whether the request is a stream, reply, whether the reply is a stream)."""
 HANDLERS = {
     (False, False): grpc.unary_unary_rpc_method_handler,
     (True, False): grpc.stream_unary_rpc_method_handler,
@@ -53,28 +27,13 @@ HANDLERS = {
 
 def description() -> Any:
     """Returns ``competition.proto`` as a protobuf file descriptor."""
-    file = descriptor_pb2.FileDescriptorProto(name=FILE, syntax="proto3")
-    for name, fields in MESSAGES.items():
-        message = file.message_type.add(name=name)
-        for number, (field, kind, is_repeated) in enumerate(fields, 1):
-            label = Kind.LABEL_REPEATED if is_repeated else Kind.LABEL_OPTIONAL
-            made = message.field.add(name=field, number=number, label=label)
-            if isinstance(kind, str):
-                made.type, made.type_name = Kind.TYPE_MESSAGE, f".{kind}"
-            else:
-                made.type = kind
-    service = file.service.add(name=SERVICE)
-    for name, (request, takes_many, reply, gives_many) in METHODS.items():
-        method = service.method.add(name=name, input_type=f".{request}", output_type=f".{reply}")
-        if takes_many:
-            method.client_streaming = True
-        if gives_many:
-            method.server_streaming = True
-    return file
+    text = Path(__file__).with_name("competition.textproto").read_text("utf-8")
+    return text_format.Parse(text, descriptor_pb2.FileDescriptorProto())
 
 
 _POOL = descriptor_pool.DescriptorPool()
 _POOL.AddSerializedFile(description().SerializeToString())
+METHODS = _POOL.FindServiceByName(SERVICE).methods
 
 
 def message(name: str) -> Any:
@@ -126,12 +85,12 @@ def serve(host: str, port: int) -> tuple[Any, int]:
     service = Service()
     server = grpc.server(ThreadPoolExecutor(WORKERS))
     handlers = {
-        name: HANDLERS[takes_many, gives_many](
-            getattr(service, name.lower()),
-            request_deserializer=message(request).FromString,
-            response_serializer=message(reply).SerializeToString,
+        method.name: HANDLERS[method.client_streaming, method.server_streaming](
+            getattr(service, method.name.lower()),
+            request_deserializer=message(method.input_type.name).FromString,
+            response_serializer=message(method.output_type.name).SerializeToString,
         )
-        for name, (request, takes_many, reply, gives_many) in METHODS.items()
+        for method in METHODS
     }
     server.add_generic_rpc_handlers((grpc.method_handlers_generic_handler(SERVICE, handlers),))
     try:

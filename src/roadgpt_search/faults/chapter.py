@@ -12,7 +12,7 @@ from roadgpt.plural import plural
 from roadgpt.report.canvas import FORMATS
 from roadgpt.report.chapters import Chapter
 from roadgpt.report.chapters.wording import as_sentence, percent, row
-from roadgpt.report.page.maps import draw_site, site_of
+from roadgpt.report.page.maps import close_up
 from roadgpt.report.page.model import (
     Block,
     Cards,
@@ -38,8 +38,8 @@ COMPARED = 2000  # failures, evenly spread, that are grouped before they are tes
 SHOWN = 24  # faults with a picture
 LISTED = 300  # faults of the table
 DRAWN = (
-    "Each picture is of a typical failure: up is the way that the road led there, blue the way of the car, "
-    "orange the car where it failed."
+    "Each picture is of a typical failure, with north up: the lighter the way of the car, the faster it was, "
+    "and a cross is where it failed."
 )
 
 
@@ -136,10 +136,8 @@ def _card(folder: Path, summary: FaultSummary, found: Faults) -> FigureCard:
     if looked and looked.simplest:
         lines.append(f"Simplest road that fails in the same way: {looked.simplest}.")
     lines.append([ShellCommand(command_line("view", named(folder, summary.name)))])
-    assert summary.run.road is not None
     station = summary.why.station if summary.why else fault.typical[0].station
-    picture = draw_site(site_of(summary.run.road, summary.run.world, summary.run.drive, station), reason)
-    return FigureCard(title, picture, lines)
+    return FigureCard(title, close_up(summary.run, station, reason), lines)
 
 
 def _picture(folder: Path, summary: FaultSummary) -> str:

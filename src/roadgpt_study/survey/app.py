@@ -34,7 +34,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from roadgpt_study.survey.store import MOST_RATERS, AnswerStore, Rater
-from roadgpt_study.survey.survey import MEDIA, MOST_LETTERS, QuestionPage, Survey, clean
+from roadgpt_study.survey.survey import MEDIA, MOST_LETTERS, TABLE, QuestionPage, Survey, clean
 
 MOST_BYTES = 64 * 1024  # of a body: a page of remarks in any alphabet, many times over
 MOST_ADDRESS = 2048  # bytes
@@ -60,14 +60,6 @@ HEADERS = {
     "X-Robots-Tag": "noindex, nofollow",
 }
 """Headers of every response, unless the response sets them itself."""
-HEADINGS = {
-    "about": "About you",
-    "alignment": "Does the road match its description?",
-    "check": "A quick check",
-    "similarity": "How similar are the two roads?",
-    "end": "Final remarks",
-}
-"""Heading of each part of a questionnaire."""
 ENVIRONMENT = Environment(
     loader=FileSystemLoader(Path(__file__).parent / "templates"),
     autoescape=True,  # every value, whatever its template is called
@@ -75,8 +67,8 @@ ENVIRONMENT = Environment(
     trim_blocks=True,
     lstrip_blocks=True,
 )
-"""The templates; all of them can use ``headings`` and ``most_letters``."""
-ENVIRONMENT.globals.update(headings=HEADINGS, most_letters=MOST_LETTERS)
+"""The templates; all of them can use ``texts`` and ``most_letters``."""
+ENVIRONMENT.globals.update(texts=TABLE, most_letters=MOST_LETTERS)
 STATIC = Path(__file__).parent / "static"
 MEDIA_TYPES = {"picture": "image/png", "film": "video/mp4", "view": "text/html"}
 JSON, FORM = "application/json", "application/x-www-form-urlencoded"
@@ -84,14 +76,7 @@ MOST_FIELDS = 100  # of a form
 KEPT = {"Cache-Control": "private, max-age=3600"}
 CLOSED = "This link is closed: its answers were deleted."
 NOT_SAVED = "Your answer could not be saved. Please try again in a moment."
-NOTICES = {
-    404: ("Not found", "There is no such page. Please open your complete link."),
-    405: ("Not possible", "This address does not accept such a request."),
-    415: ("Not accepted", "Answers are sent as a form; files are not accepted."),
-    422: ("Not saved", "An answer is too long or not one of those offered. Please go back and correct it."),
-    503: ("Full", "This survey has as many raters as it can take."),
-}
-"""Heading and sentence of an error page, by HTTP status."""
+NOTICES: Mapping[str, list[str]] = TABLE["notices"]
 Answer = Callable[[Request, bytes], Response]
 
 
@@ -264,7 +249,7 @@ class SurveyApp:
             return JSONResponse({"error": error.detail}, status, headers)
         if status == 410:
             return self._page("deleted.html", 410 if request.method == "POST" else 200)
-        heading, sentence = NOTICES.get(status, (error.detail, error.detail))
+        heading, sentence = NOTICES.get(str(status), (error.detail, error.detail))
         page = self._page("notice.html", status, heading=heading, sentence=sentence)
         page.headers.update(headers or {})
         return page

@@ -14,18 +14,9 @@ from roadgpt.errors import UsageError
 from roadgpt.reading import read_text, toml_of
 from roadgpt.run import Run, read_run, seed_of
 from roadgpt.run.folder import RUNS, finished, run_folder
-from roadgpt_study.survey.survey import ABOUT, PAIR_CRITERIA, Question
+from roadgpt_study.survey.survey import ABOUT, PAIR_CRITERIA, TABLE, Question
 
 Words = Annotated[str, Field(min_length=1, max_length=4000)]
-PURPOSE = (
-    "A program made roads from descriptions, for tests of self-driving cars. We want to know whether people "
-    "find that the roads match their descriptions, and how different two roads of one description are. "
-    "It takes about {minutes} minutes."
-)
-KEEPS = (
-    "Answers are stored on a computer of the people who run this survey. They are published only as totals "
-    "over all raters and as single remarks without names."
-)
 PER_PAGE = 1.5  # minutes that a page takes, roughly: plots, films, a handful of questions
 DEEPEST = 4  # folders below the study's in which campaigns are looked for
 
@@ -73,7 +64,7 @@ class SurveyPlan(Frozen):
     asks: Words
     contact: Words
     purpose: str = ""
-    keeps: Words = KEEPS
+    keeps: Words = TABLE["keeps"]
     attention_check: bool = True
     films: bool = True
     views: bool = True
@@ -88,7 +79,7 @@ class SurveyPlan(Frozen):
         if self.purpose:
             return self.purpose
         minutes = round(PER_PAGE * (len(self.alignment) + len(self.similarity)) + 2)
-        return PURPOSE.format(minutes=minutes)
+        return str(TABLE["purpose"]).format(minutes=minutes)
 
     @property
     def questions(self) -> tuple[Question, ...]:

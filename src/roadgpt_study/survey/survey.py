@@ -1,19 +1,18 @@
 """Defines a survey that can be served: its texts, roads and questions, as stored in ``survey.json``.
 
-The three parts, the questions, their answers and criteria are those of RoadGPT's thesis, section 6.2. The
-thesis gives all five answers to questions about a road and its description. For questions about two roads, it
-gives only the first, the second and the last of five answers; the third and the fourth are our additions.
+The texts and questions of every questionnaire are in ``questionnaire.toml``.
 """
 
+import tomllib
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from roadgpt.brief.model import Frozen
-from roadgpt.reading import read_model
+from roadgpt.reading import read_model, read_text
 
 CARD = "survey.json"
 MEDIA = "media"
@@ -24,42 +23,10 @@ Rated = Literal["alignment", "similarity"]
 MOST_LETTERS = 2000  # of a remark
 REMARKS = "remarks"
 OVERALL = "overall"
-MATCHES = (
-    "does not match the description at all",
-    "generally does not match the description",
-    "somewhat matches the description",
-    "mostly matches the description",
-    "perfectly matches the description",
-)
-ALIKE = (
-    "definitely different",
-    "mostly dissimilar",
-    "somewhat similar",
-    "mostly similar",
-    "basically the same road",
-)
-ALIKE_IN = (*ALIKE[:-1], "(almost) identical")
-ASKED: Mapping[Rated, tuple[str, str, str]] = {
-    "alignment": (
-        "How well does the road match the description in general?",
-        "how well does the road match?",
-        "this road",
-    ),
-    "similarity": (
-        "How similar are road 1 (top) and road 2 (bottom) in general?",
-        "how similar are the two roads?",
-        "these two roads",
-    ),
-}
-"""The overall question, the question for each criterion, and what raters may remark on."""
+TABLE: dict[str, Any] = tomllib.loads(read_text(Path(__file__).with_name("questionnaire.toml")))
+MATCHES, ALIKE = (tuple[str, ...](TABLE[part]["answers"]) for part in ("alignment", "similarity"))
 CHECK = 2  # index in MATCHES of the answer that the attention check asks for
-CRITERIA = {
-    "turns": "number of turns",
-    "incline": "incline",
-    "order": "order of turns",
-    "length": "length of the road",
-}
-"""The names of criteria in SURVEY.toml, and the texts that raters read."""
+CRITERIA: Mapping[str, str] = TABLE["criteria"]
 PAIR_CRITERIA = tuple(CRITERIA.values())
 
 
@@ -88,40 +55,12 @@ class Question(Frozen):
         return self.answers.index(value) + 1
 
 
-RATHER_NOT = "I would rather not say"
-HOW_OFTEN = ("never", "occasionally", "regularly")
 ABOUT = tuple(
-    Question(id=f"about.{name}", text=text, answers=(*answers, RATHER_NOT))
-    for name, text, answers in (
-        (
-            "age", "How old are you?",
-            ("under 20", "20 to 29", "30 to 39", "40 to 49", "50 to 59", "60 or older"),
-        ),
-        (
-            "occupation", "What is your occupation?",
-            ("student", "researcher", "engineer or developer", "teacher or lecturer", "something else"),
-        ),
-        ("licence", "Do you have a driver's licence?", ("yes", "no")),
-        (
-            "countries", "In how many countries have you driven?",
-            ("none", "1", "2 to 3", "4 to 6", "7 or more"),
-        ),
-        ("ai", "How often do you use generative AI (chat and the like)?", HOW_OFTEN),
-        ("simulators", "How often do you use driving simulators?", HOW_OFTEN),
-    )
-)  # fmt: skip
-"""The thesis' six questions about the rater."""
-
-
-ATTENTION = Question(
-    id="check",
-    text=f"This question checks that questions are read. Please choose “{MATCHES[CHECK]}” here.",
-    answers=MATCHES,
+    Question(id=row["id"], text=row["text"], answers=(*row["answers"], TABLE["about"]["rather_not"]))
+    for row in TABLE["about"]["questions"]
 )
-"""The attention check, whose text contains the right answer."""
-END = Question(
-    id="end.remarks", text="Is there anything else that you want to tell us? (optional)", is_needed=False
-)
+ATTENTION = Question(id="check", text=TABLE["check"]["text"].format(answer=MATCHES[CHECK]), answers=MATCHES)
+END = Question(id="end.remarks", text=TABLE["end"]["text"], is_needed=False)
 
 
 class Medium(Frozen):
@@ -149,21 +88,21 @@ class Item(Frozen):
     @property
     def questions(self) -> tuple[Question, ...]:
         """An overall rating, a rating for each criterion, and remarks."""
-        overall, each, what = ASKED[self.part]
-        answers, in_each = (MATCHES, MATCHES) if self.part == "alignment" else (ALIKE, ALIKE_IN)
-        remarks = f"Do you have any remarks about {what}? (optional)"
+        asked = TABLE[self.part]
+        answers = tuple(asked["answers"])
+        in_each = (*answers[:-1], asked.get("best_of_each", answers[-1]))
         return (
-            Question(id=f"{self.id}.{OVERALL}", text=overall, answers=answers, criterion=OVERALL),
+            Question(id=f"{self.id}.{OVERALL}", text=asked["overall"], answers=answers, criterion=OVERALL),
             *(
                 Question(
                     id=f"{self.id}.{number}",
-                    text=f"{criterion[:1].upper()}{criterion[1:]}: {each}",
+                    text=f"{criterion[:1].upper()}{criterion[1:]}: {asked['each']}",
                     answers=in_each,
                     criterion=criterion,
                 )
                 for number, criterion in enumerate(self.criteria, 1)
             ),
-            Question(id=f"{self.id}.{REMARKS}", text=remarks, is_needed=False),
+            Question(id=f"{self.id}.{REMARKS}", text=asked["remarks"], is_needed=False),
         )
 
 

@@ -7,8 +7,8 @@ A Page holds a short summary, sections with text, tables and figures, and inform
     tables/NAME.csv .tex   every table, as CSV with plain numbers and as LaTeX (booktabs)
 
 Figures are SVG in the page's colours. matplotlib draws ``forest`` (shares with intervals), ``heat`` (a
-matrix, or a feature map), ``lines`` and ``bars``; ``gallery`` (small maps of roads, each a link) and
-``draw_site`` (the place of a failure) write SVG themselves."""
+matrix, or a feature map), ``lines`` and ``bars``; ``gallery`` (small maps of roads, each a link) writes
+SVG itself, and ``close_up`` (the place of a failure) holds a PNG."""
 
 from functools import cache
 from pathlib import Path

@@ -5,18 +5,17 @@ take 1.6 s and write 1.8 times the bytes, without the titles that appear when th
 
 from base64 import b64encode
 from collections.abc import Sequence
-from dataclasses import dataclass
 from html import escape
 
 import numpy as np
 
-from roadgpt.drive import Drive
 from roadgpt.geometry.curve import Array
-from roadgpt.network import Network, network_of, only_road
-from roadgpt.network.markings import arrows, strokes
+from roadgpt.report.birds_eye import driven_path, mark, places_of
+from roadgpt.report.canvas import HALO, INK, encoded, in_our_style, new_figure
+from roadgpt.report.others import draw_others, moment_of
 from roadgpt.report.overview import Thumbnail
-from roadgpt.report.plan_view import rings_of
-from roadgpt.road import Road, World
+from roadgpt.report.plan_view import GROUND, draw_road
+from roadgpt.run import Run
 from roadgpt.verdict import percent, severity
 
 INCH = 90.0  # px, of pictures
@@ -24,11 +23,7 @@ NARROW = 384.0  # px; a chart that is meant to be narrower is not widened on any
 CELL, GAP, TITLE, COLUMNS = 48.0, 8.0, 14.0, 10
 POINTS = 36  # of the line of a road
 STYLES = {"NOT TESTED": "8 2", "INVALID": "4 2", "ERROR": "1.5 2"}
-SIDE = 240.0  # px
-ACROSS = 52.0  # m that are shown
-BEHIND = 8.0  # m by which the middle of the picture lies before the failure, to show what led to it
-REACH = 60.0  # m of road that are drawn, before and after
-SCALE = 10.0  # m, of the bar
+SIDE, ACROSS, SCALE = 2.8, 52.0, 10.0  # inches and metres of a place that is shown; metres of its bar
 
 
 def tag(name: str, content: str = "", /, **attributes: object) -> str:
@@ -44,12 +39,6 @@ def number(value: float) -> str:
     """Returns a number with at most two decimals, and no trailing zeros."""
     text = f"{value:.2f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
-
-
-def words(x: float, y: float, text: str, size: float, is_soft: bool = False) -> str:
-    """Returns a text element that begins at (x, y)."""
-    style = {"class_": "soft"} if is_soft else {}
-    return tag("text", escape(text), x=x, y=y, font_size=size, **style)
 
 
 def chart(width: float, height: float, content: str, label: str) -> str:
@@ -91,20 +80,20 @@ def gallery(roads: Sequence[Thumbnail], size: float, label: str, columns: int = 
 
 def _cell(road: Thumbnail, x: float, y: float, size: float) -> str:
     top = y + TITLE
-    mark = road.outcome.lower()
-    hue = f"var(--{mark.replace(' ', '-')})"
+    said = road.outcome.lower()
+    hue = f"var(--{said.replace(' ', '-')})"
     if road.graded != road.outcome and road.share is not None:
-        hue, mark = f"var(--{severity(road.share).split()[0]})", percent(road.share)
+        hue, said = f"var(--{severity(road.share).split()[0]})", percent(road.share)
     out = [
         tag("title", f"road {road.number}: {road.graded}"),
-        words(x + 1, top - 3.5, f"{road.number}", 10, is_soft=True),
+        tag("text", f"{road.number}", x=x + 1, y=top - 3.5, font_size=10, class_="soft"),
         tag(
             "rect", x=x, y=top, width=CELL, height=CELL, rx=2, fill="var(--wash)", stroke="var(--line)",
             class_="frame",
         ),
     ]  # fmt: skip
     if road.graded not in ("PASS", "VALID"):
-        shown = tag("tspan", mark, fill=hue)
+        shown = tag("tspan", said, fill=hue)
         text = f'<text x="{number(x + CELL - 1)}" y="{number(top - 3.5)}" font-size="9.5" text-anchor="end">'
         out.append(f"{text}{shown}</text>")
     if not len(road.points):
@@ -127,99 +116,22 @@ def _cell(road: Thumbnail, x: float, y: float, size: float) -> str:
     return "".join(out)
 
 
-@dataclass(frozen=True, eq=False)
-class FailureSite:
-    """The lines of the picture that shows where a car failed, each as points of shape ``(n, 2)`` in
-    metres."""
-
-    rings: tuple[Array, ...]  # outlines of the paved area, and, the other way round, of the holes in it
-    lines: tuple[tuple[Array, bool], ...]
-    """Edges of the road, and markings: the points of each, and whether it is a broken line."""
-    path: Array  # path of the car's centre of gravity up to the failure; empty if there is no drive
-    car: Array | None  # four corners of the car at the failure; None if there is no drive
-    at: Array  # position ``(2,)`` of the middle of the driven lane at the station of the failure
-    heading: float
-    """Heading, in radians, of the road shortly before the place of the failure; this direction points up in
-    the picture."""
-    arrows: tuple[Array, ...] = ()
-    """The outlines of the arrows that are painted before the junctions of a network."""
-
-
-def site_of(road: Road, world: World, drive: Drive | None, station: float) -> FailureSite:
-    """Returns the lines to draw for a failure that occurred ``station`` metres along a road."""
-    path, car = np.empty((0, 2)), None
-    if drive is not None:
-        reached = np.flatnonzero(drive["s"] >= station)
-        last = int(reached[0]) if len(reached) else len(drive) - 1
-        near = np.flatnonzero(drive["s"][:last] >= station - REACH)[::5]
-        path = np.stack([drive["x"], drive["y"]], axis=1)[[*near, last]]
-        car = drive.corners(last)
-    heading = float(road.heading(max(0.0, station - 2 * BEHIND)))
-    profile = world.profile_of(road)
-    at = road.at(station, profile.middle(station))[:2]
-    if only_road(road, world) is None:
-        network = network_of(road, world)
-        painted = _near([arrow.points[:, :2] for arrow in arrows(network)], at)
-        return FailureSite(*_network_around(network, at), path, car, at, heading, painted)
-    s = np.arange(max(0.0, station - REACH), min(road.length, station + REACH) + 0.5)
-    (_, left), *inner, (_, right) = [(mark, road.at(s, t)[:, :2]) for mark, t in profile.boundaries(s)]
-    marked = [(line, mark == "broken") for mark, line in inner if mark != "none"]
-    lines = ((left, False), *marked, (right, False))
-    return FailureSite((np.concatenate([left, right[::-1]]),), lines, path, car, at, heading)
-
-
-def _network_around(network: Network, at: Array) -> tuple[tuple[Array, ...], tuple[tuple[Array, bool], ...]]:
-    import shapely
-
-    box = shapely.box(*(at - ACROSS), *(at + ACROSS))
-    outlines = rings_of(shapely.orient_polygons(shapely.intersection(network.paved, box)))
-    lines = _near([stroke.points[:, :2] for stroke in strokes(network)], at)
-    return tuple(outlines), tuple((line, False) for line in lines)
-
-
-def _near(lines: Sequence[Array], at: Array) -> tuple[Array, ...]:
-    return tuple(line for line in lines if np.abs(line - at).max(axis=1).min() < ACROSS)
-
-
-def draw_site(of: FailureSite, label: str) -> str:
-    """Returns the picture as SVG, rotated so that the road leads upwards to the failure."""
-    turned = np.pi / 2 - of.heading
-    turn = np.array([[np.cos(turned), -np.sin(turned)], [np.sin(turned), np.cos(turned)]])
-    size = SIDE / ACROSS
-
-    def placed(points: Array) -> Array:
-        there = (points - of.at) @ turn.T * size
-        return np.asarray([SIDE / 2, SIDE / 2 - BEHIND * size] + there * [1, -1])
-
-    outline = "".join(f"M{_points(placed(ring))}z" for ring in of.rings)
-    out = [
-        tag("rect", width=SIDE, height=SIDE, fill="var(--wash)"),
-        tag("path", d=outline, fill="var(--road)"),
-        *(
-            _line(placed(each), "var(--edge)", 1.2, **({"stroke_dasharray": "9 7"} if is_broken else {}))
-            for each, is_broken in of.lines
-        ),
-        *(tag("polygon", points=_points(placed(each)), fill="var(--edge)") for each in of.arrows),
-    ]
-    if len(of.path):
-        out.append(_line(placed(of.path), "var(--s0)", 2.4))
-    if of.car is not None:
-        car = _points(placed(of.car))
-        out.append(tag("polygon", points=car, fill="var(--fail)", fill_opacity=0.85, stroke="var(--paper)"))
-    bar, below = SCALE * size, SIDE - 12.0
-    out += [
-        tag(
-            "rect", x=7, y=below - 16, width=bar + 10, height=21, rx=2, fill="var(--wash)", fill_opacity=0.85
-        ),
-        tag("line", x1=12, y1=below, x2=12 + bar, y2=below, class_="axis"),
-        words(12, below - 5, f"{SCALE:.0f} m", 10.5),
-    ]
-    return chart(SIDE, SIDE, "".join(out), label)
-
-
-def _points(points: Array) -> str:
-    return " ".join(f"{number(x)},{number(y)}" for x, y in points.tolist())
-
-
-def _line(points: Array, colour: str, width: float, **more: str) -> str:
-    return tag("polyline", points=_points(points), fill="none", stroke=colour, stroke_width=width, **more)
+@in_our_style
+def close_up(run: Run, station: float, label: str) -> str:
+    """Returns a picture of the road of a Run around a station, north up, with the way of the car and the
+    others, as an ``svg`` element."""
+    assert run.road is not None
+    x, y, _ = run.road.at(station, run.world.profile_of(run.road).middle(station)).tolist()
+    figure, per_inch, low, foot = new_figure(SIDE, SIDE), ACROSS / SIDE, x - ACROSS / 2, y - ACROSS / 2
+    figure.set_facecolor(GROUND)
+    axes = figure.add_axes((0, 0, 1, 1), xlim=(low, low + ACROSS), ylim=(foot, foot + ACROSS))
+    axes.set_axis_off()
+    draw_road(axes, run.road, run.world, per_inch)
+    if run.drive is not None:
+        driven_path(axes, run.drive)
+        draw_others(axes, run, per_inch, moment_of(run))
+    for place in places_of(run):
+        mark(axes, run, place)
+    axes.plot([low + 2, low + 2 + SCALE], [foot + 2] * 2, color=INK, lw=1.4, zorder=12)
+    axes.text(low + 2, foot + 2.8, f"{SCALE:g} m", size=9, color=INK, path_effects=HALO, zorder=12)
+    return embedded_png(encoded(figure, "png"), SIDE, SIDE, label)
