@@ -12,9 +12,11 @@ from roadgpt.drive.drive_monitor import STUCK_AMONG_OTHERS, STUCK_TIME
 from roadgpt.language.names import Face
 from roadgpt.language.table import VEHICLES
 from roadgpt.road.world import share_in_words
+from roadgpt.traffic.traffic import LATE, NEVER
 from roadgpt.verdict.criteria import (
     FREE,
     NAMED,
+    ROBOT,
     STEERED,
     SUCCESS,
     Criterion,
@@ -47,6 +49,7 @@ FAULTS: dict[Fault | None, str] = {
 }  # fmt: skip
 FACES: dict[Face, str] = {"front": "front", "rear": "rear", "left": "left side", "right": "right side"}
 
+NOT_MET, AVOIDED = "they never touched", "the tested driver avoided that"
 LEAST = 0.005  # m; smaller distances beyond a marking are not stated
 
 GIVES_WAY: tuple[Cause, ...] = ("stop line", "red light", "failure to yield")
@@ -119,9 +122,14 @@ def judge(
         outcome, why = told(laid, drive, world)
         description = f"{description}; {why}" if outcome == "PASS" else f"{why}; {description}"
     elif drive.missed:
-        from roadgpt.traffic.traffic import LATE
-
         description += "".join(f"; {each}" for each in drive.missed if not each.endswith(LATE))
+    is_robots = drive.driver == ROBOT and outcome == "PASS"
+    hits = _hits(case, AVOIDED if failed is None and not is_robots else NOT_MET)
+    never = [f"{each.who} {each.what}: {each.why}" for each in hits if each.time is None]
+    if never and is_robots:
+        outcome, description = "INVALID", f"did not happen: {' and '.join(never)}; {description}"
+    else:
+        description += "".join(f"; {NEVER} {each}" for each in never)
     s, x, y, time = (float(drive[name][step]) for name in ("s", "x", "y", "time"))
     if cause == "collision" and contact is not None:
         s, (x, y), time = contact.at_s, contact.at_xy, contact.at_time
@@ -139,7 +147,7 @@ def judge(
         at_time=time if failed else None,
         side=side,
         incidents=incidents if case.is_route or drive.others is not None else None,
-        events=_events(case, incidents),
+        events=_events(case, incidents, hits),
         least_gap=gap,
         least_ttc=ttc,
         own_share=drive.shares.get(drive.driver),
@@ -152,12 +160,22 @@ def judge(
     )
 
 
-def _events(case: Judged, incidents: Sequence[Incident]) -> tuple[Event, ...] | None:
+def _hits(case: Judged, why: str) -> tuple[Event, ...]:
+    if all(each.hits not in STRUCK for each in case.world.scene.actors):
+        return ()
+    from roadgpt.verdict.events import told_hits
+
+    return tuple(told_hits(case, why))
+
+
+def _events(
+    case: Judged, incidents: Sequence[Incident], hits: Sequence[Event]
+) -> tuple[Event, ...] | None:
     if case.drive.others is None and not (case.drive.handovers or case.drive.history):
         return None
     from roadgpt.verdict.events import events_of
 
-    return events_of(case, incidents) or None
+    return events_of(case, incidents, hits) or None
 
 
 def _blame(
