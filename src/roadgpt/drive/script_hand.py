@@ -7,7 +7,7 @@ the new one. In a test, the robot drives until the event begins, and the drive e
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -130,6 +130,7 @@ class ScriptHand:
         """The events of maneuvers that have begun, or never will."""
         self._around = ""
         """Who is overtaken or passed."""
+        self.has_crashed, self._hand = False, cast("str | None", None)
         event = "past" if traffic is None else traffic.event
         self._has_event = world.scene.is_test and (bool(self._maneuvers) or event != "past")
         is_robot = getattr(driver, "name", "") == Robot.name
@@ -179,12 +180,20 @@ class ScriptHand:
 
     def _move(self, by: float, lateral: float) -> None:
         """Moves the lane by some metres to the left, with a speed sideways of at most so many m/s."""
-        v, long = self._speed.v, self._long(by, lateral)
         s = self._line.to_road(self._course.s - self._box.ahead)
-        self.moves = (*self.moves, LaneMove(s, s + long, by))
-        profile = self._world.profile_of(self.road)
-        triggers = self._triggers
-        self._follow(self.road.with_profile(profile.moved(*self.moves[-1])))
+        self._lay(LaneMove(s, s + self._long(by, lateral), by))
+
+    def _stay(self, s: float, back: float) -> None:
+        """Stays in the lane that it has at a station, if so many metres before that it had another one."""
+        profile, end = self._world.profile_of(self.road), s - back - self._box.length
+        if by := profile.aside_at(s) - profile.aside_at(end):
+            self._lay(LaneMove(end - 1.0, end, by))
+
+    def _lay(self, move: LaneMove) -> None:
+        """Moves the lane between two stations."""
+        s, triggers, v = self._line.to_road(self._course.s - self._box.ahead), self._triggers, self._speed.v
+        self.moves = (*self.moves, move)
+        self._follow(self.road.with_profile(self._world.profile_of(self.road).moved(*move)))
         self._course.s, self._speed.v = self._line.from_road(s) + self._box.ahead, v
         self._triggers.time, self._triggers.signs = triggers.time, triggers.signs
         self._lateral.t, self._lateral.slope, self._lateral.slide = 0.0, 0.0, None
@@ -249,7 +258,13 @@ class ScriptHand:
 
     def shared(self, view: View, command: Pedals) -> tuple[Pedals, str | None]:
         """Returns the command that counts, of the driver's and the script's, and the name of the script's
-        hands; None if it has none. Call it once for every control step."""
+        hands; None if it has none. Call it once for every control step. Nothing begins or ends any more once
+        the car ``has_crashed``: it brakes then whatever anybody says."""
+        if not self.has_crashed:
+            command, self._hand = self._shared(view, command)
+        return command, self._hand
+
+    def _shared(self, view: View, command: Pedals) -> tuple[Pedals, str | None]:
         self._see(view)
         self._go_on(view)
         self._begin_in_time(view)
@@ -454,6 +469,8 @@ class ScriptHand:
                 self._go_aside(each, view)
             elif each.what in ("reverse", "u_turn"):
                 self._shunt = Shunt(self.road, self._world, self._box, each, view)
+                if each.what == "reverse":
+                    self._stay(view.s, self._shunt.reach)
                 self._phases = [Phase(0.0, STOP, until="speed"), Phase(until="shunted")]
             elif number in self._stretches:
                 self._phases = self._through(each, *self._stretches[number])
@@ -680,7 +697,7 @@ class ScriptHand:
     def missed(self) -> tuple[str, ...]:
         """What the car was told to do and has not begun so far, in sentences."""
         found = list(self._skipped)
-        if self._around and self._phases:
+        if self._around and self._phases and not self.has_crashed:
             found.append(f"{NEVER} {self._did(self._begun - 1)}: it had not come past")
         elif self._phases and self._maneuvers[self._begun - 1].what in INTO_LANE:
             stands = self._speed.v < ROLLS and self._triggers.time - self._since > LONG

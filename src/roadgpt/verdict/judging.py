@@ -168,9 +168,7 @@ def _hits(case: Judged, why: str) -> tuple[Event, ...]:
     return tuple(told_hits(case, why))
 
 
-def _events(
-    case: Judged, incidents: Sequence[Incident], hits: Sequence[Event]
-) -> tuple[Event, ...] | None:
+def _events(case: Judged, incidents: Sequence[Incident], hits: Sequence[Event]) -> tuple[Event, ...] | None:
     if case.drive.others is None and not (case.drive.handovers or case.drive.history):
         return None
     from roadgpt.verdict.events import events_of
