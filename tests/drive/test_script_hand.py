@@ -68,6 +68,18 @@ def test_it_stops_before_the_line_waits_and_creeps() -> None:
     assert at(drive, "speed", hand[2] + 6.0) > 8.0
 
 
+@pytest.mark.parametrize(
+    ("scene", "ends"),
+    [("", 4.0), (", speed 50 time=20", 8.0), (", stop s=80, wait 3", 12.0)],  # s of creeping, at least
+)
+def test_it_creeps_until_what_is_next_or_for_a_while(scene: str, ends: float) -> None:
+    drive = drive_of(f"straight 300 && ego v=30: stop 3 s=50, wait 2, creep{scene}", "robot")
+    stands = drive["time"][drive["speed"] < 0.1]
+    first = stands[np.argmax(np.diff(stands, append=np.inf) > 0.1)]
+    later = drive["time"] > first + 1.5
+    assert drive["speed"][later & (drive["time"] < first + ends)].max() < 6.0 / 3.6
+
+
 def test_it_waits_for_what_another_one_does() -> None:
     scene = (
         "ego v=50: stop 3 s=60, creep after truck 1 brake; truck oncoming gap=300 v=50: brake 4 to=20 time=14"

@@ -28,7 +28,7 @@ from roadgpt.traffic.actor import STILL
 from roadgpt.traffic.course import Course, Met
 from roadgpt.traffic.lateral import Lateral, Offsets
 from roadgpt.traffic.longitudinal import Longitudinal
-from roadgpt.traffic.maneuver import CHANGE, FAST, LATERAL, STOP, Maneuver, Phase, drawn
+from roadgpt.traffic.maneuver import CHANGE, FAST, LATERAL, ROLL, STOP, Maneuver, Phase, drawn
 from roadgpt.traffic.places import SIGN, offset_of, stretch_of
 from roadgpt.traffic.traffic import ENDED, NEVER, T0, Stage
 from roadgpt.traffic.triggers import Triggers
@@ -58,7 +58,7 @@ CLEAR_OF_PEOPLE = 1.5  # m, also of who rides a bicycle: Germany, StVO, section 
 EARLY = 1.0  # s, before it would have to begin to go around somebody
 FOLLOWING = 2.0  # s of headway, with which it still follows whom it overtakes
 EDGE = 0.2  # m, from the edge of the shoulder, or the road, where it pulls over
-ROW = 15.0  # m between those that stand in one row
+ROW, CONES = 15.0, 1.5  # m between those that stand in one row; s at the limit between cones of roadworks
 PASSED = {"overtake": 10.0, "pass": 2.0}  # m, behind its rear, where it goes back
 TASKS = ("speed", "brake", "stop", "creep", "change_lane")
 """What a driver may do itself."""
@@ -431,15 +431,22 @@ class ScriptHand:
         first = int(np.where(is_it, ahead, np.inf).argmin())
         half, wide = (float(each[first]) for each in boxes.reach)
         low, high = float(boxes.along[first]) - half, float(boxes.along[first]) + half
-        stands = np.hypot(*boxes.velocity.T) < STILL
-        in_row = np.abs(boxes.t - boxes.t[first]) < boxes.reach[1] + wide
-        in_row &= stands & stands[first] & np.isfinite(ahead) & (name is not None)
-        for each in np.argsort(np.abs(ahead - ahead[first])):  # the nearest ones first
+        left, right = float(boxes.t[first]) + wide, float(boxes.t[first]) - wide
+        stands, aside = np.hypot(*boxes.velocity.T) < STILL, np.abs(boxes.t - boxes.t[first])
+        are_cones, far = actors[first].kind in THINGS, ROW
+        in_row = stands & stands[first] & np.isfinite(ahead) & (aside < boxes.reach[1] + wide)
+        if are_cones:  # of roadworks, which lead aside
+            far, one = max(ROW, CONES * self._world.limits.speed_limit), self._line.width_at(boxes.along[first])
+            in_row = [each.kind in THINGS for each in actors] & stands & (aside < one)
+        for each in np.argsort(np.abs(ahead - ahead[first])) if name or are_cones else ():  # the nearest first
             begin, end = boxes.along[each] - boxes.reach[0][each], boxes.along[each] + boxes.reach[0][each]
-            if in_row[each] and begin - ROW < high and end + ROW > low:
+            if in_row[each] and begin - far < high and end + far > low:
                 low, high = min(low, float(begin)), max(high, float(end))
-        met = Met((low + high) / 2, float(boxes.velocity[first, 0]), high - low, 2 * wide)
-        return actors[first].name, met, float(boxes.t[first])
+                if are_cones:
+                    t, half = float(boxes.t[each]), float(boxes.reach[1][each])
+                    left, right = max(left, t + half), min(right, t - half)
+        met = Met((low + high) / 2, float(boxes.velocity[first, 0]), high - low, left - right)
+        return actors[first].name, met, (left + right) / 2
 
     def _begin_in_time(self, view: View) -> None:
         """Begins what is next if it is time."""
@@ -477,9 +484,10 @@ class ScriptHand:
             else:
                 self._phases = [] if each.what == "release" else self._triggers.phases(each)
             rest = self._maneuvers[self._begun :]
-            is_waiting = bool(rest) and not rest[0].is_open and "duration" not in each.n
-            if each.what in ("stop", "pull_over") and is_waiting:
-                self._phases.append(Phase(lasts=math.inf))
+            is_waiting, creeps = bool(rest) and not rest[0].is_open, each.what == "creep"
+            is_waiting |= creeps and self._begun in (*self._places, *self._ends, *self._stretches)
+            if "duration" not in each.n and (creeps or (each.what in ("stop", "pull_over") and is_waiting)):
+                self._phases.append(Phase(lasts=math.inf if is_waiting else ROLL))
             if self._phases:
                 self._enter(view)
                 if each.what in self._follows:
@@ -617,7 +625,8 @@ class ScriptHand:
                 self._skipped.append(f"{NEVER} {did}: it had left the road before")
             if self._phases:
                 self._enter(view)
-            if not self._phases or self._phases[0].lasts == math.inf:
+            what, stays = self._maneuvers[self._begun - 1].what, bool(self._phases) and self._phases[0].lasts
+            if not self._phases or (stays == math.inf and what != "creep"):
                 self._tell("after", self._maneuvers[self._begun - 1], view)
         if not self._phases:
             return
