@@ -35,6 +35,14 @@ def test_the_robot_avoids_nobody_so_it_did_not_happen(avoided: Run) -> None:
     assert found.description.startswith("did not happen: van 1 hits the tested car's front")
 
 
+def test_how_far_the_script_steers_out_of_the_lane_is_told() -> None:
+    words = "straight 500 && ego v=50: drift left shift=2.2 lat=0.5, release"
+    run = perform(words, seed=3, setup=Setup(driver="reference", reader="plan"))
+    assert run.drive is not None
+    most = 100 * float(run.drive["outside"].max())
+    assert f"steered it out of its lane, with up to {most:.0f} % of it outside" in run.description
+
+
 def test_a_told_contact_that_comes_is_an_event_with_its_time() -> None:
     run = perform(CUTS_IN, seed=3, setup=Setup(driver="robot", reader="plan"))
     assert run.verdict is not None

@@ -104,7 +104,11 @@ def _until_stop(scene: Scene, speed: float, limit: float, brief: Brief) -> float
     gaps = [role.gap for role in roles if role.where == "oncoming"]
     longest = max(_length(road).hi for road in brief.stretches or (brief,))
     least = FOR_FLOW if scene.has_flow and longest > FOR_FLOW + SPARE + speed**2 / 2 / STOPS else 0.0
-    return max(max(seconds) * speed, _told(scene, speed, limit), *map(_most, gaps), least) + sum(map(_row, roles)) + SPARE
+    return (
+        max(max(seconds) * speed, _told(scene, speed, limit), *map(_most, gaps), least)
+        + sum(map(_row, roles))
+        + SPARE
+    )
 
 
 def _told(scene: Scene, speed: float, limit: float) -> float:

@@ -436,9 +436,14 @@ class ScriptHand:
         are_cones, far = actors[first].kind in THINGS, ROW
         in_row = stands & stands[first] & np.isfinite(ahead) & (aside < boxes.reach[1] + wide)
         if are_cones:  # of roadworks, which lead aside
-            far, one = max(ROW, CONES * self._world.limits.speed_limit), self._line.width_at(boxes.along[first])
+            far, one = (
+                max(ROW, CONES * self._world.limits.speed_limit),
+                self._line.width_at(boxes.along[first]),
+            )
             in_row = [each.kind in THINGS for each in actors] & stands & (aside < one)
-        for each in np.argsort(np.abs(ahead - ahead[first])) if name or are_cones else ():  # the nearest first
+        for each in (
+            np.argsort(np.abs(ahead - ahead[first])) if name or are_cones else ()
+        ):  # the nearest first
             begin, end = boxes.along[each] - boxes.reach[0][each], boxes.along[each] + boxes.reach[0][each]
             if in_row[each] and begin - far < high and end + far > low:
                 low, high = min(low, float(begin)), max(high, float(end))

@@ -115,6 +115,7 @@ def judge(
     crashed = (each for each in drive.history if each.what.startswith("hits ") and each.time is not None)
     description += "".join(f"; {each.who} {each.what} at {each.time:.1f} s" for each in crashed)
     description += _on_face(world, hit) + _counted(untold, cause) + _who_drove(drive, excuse)
+    description += _led_out(drive, world)
     description += "".join(f"; {each}" for each in [*filter(None, [found and found.said]), *drive.limited])
     if failed is None and drive.missed:
         from roadgpt.verdict.happened import told
@@ -259,6 +260,16 @@ def _who_drove(drive: "Drive", excuse: str) -> str:
     told = " and ".join(f"{name} for {percent(part)}" for name, part in others if name != RUN_IN)
     took = [f"{own} drove {percent(share)} of the way and handed over to {told}"] if told else []
     return "".join(f"; {each}" for each in (*run_in, *took, *filter(None, [excuse])))
+
+
+def _led_out(drive: "Drive", world: "World") -> str:
+    """Returns in words how far the script steered the car out of its lane, where that does not count."""
+    time, led = drive["time"], np.zeros(len(drive), bool)
+    for each in drive.handovers:
+        led |= (time > each.start) & (time <= each.end) & (each.by == SCRIPT)
+    most = float(drive["outside"][led].max(initial=0.0))
+    out = most > world.limits.oob_tolerance
+    return f"; {SCRIPT} steered it out of its lane, with up to {percent(most)} of it outside" if out else ""
 
 
 def far_beyond(beyond: float) -> str:
