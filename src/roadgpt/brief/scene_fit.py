@@ -113,9 +113,9 @@ def _until_stop(scene: Scene, speed: float, limit: float, brief: Brief) -> float
 
 def _told(scene: Scene, speed: float, limit: float) -> float:
     """Returns the last of the places along the road that a scene tells, in metres."""
-    every = [*scene.actions, *scene.slippery, *scene.actors]
-    every += [each for role in scene.actors for each in role.actions]
-    ends = [_most(each.station) or _most(getattr(each, "distance", None)) for each in every]
+    acts = [each for role in scene.actors for each in role.actions]
+    every = (*scene.actions, *acts, *scene.slippery, *scene.actors)
+    ends = [_most(getattr(each, name, None)) for each in every for name in ("station", "distance")]
     for each in scene.roadworks:
         first = _most(each.station) or ROLLS * speed
         ends.append(each.stations(first, _most(each.length), LANE, limit)[-1])

@@ -192,8 +192,8 @@ def works_rows(road: "Road", world: "World", seed: int) -> list[tuple[ActorKind,
             t = outer + into * math.copysign(1.0, inner - outer)
             if -LEAST_ROOM < s - start < TO_ENTER and to_right < t < to_left:
                 raise SceneError(
-                    f"{works} stand at {s:.0f} m in the way of the tested car, which starts at {start:.0f} m; "
-                    f"let them begin at {start + TO_ENTER:.0f} m or later"
+                    f"{works} stand in the way of the tested car, which starts at {start:.0f} m; let them "
+                    f"begin at {start + TO_ENTER:.0f} m or later"
                 )
             t += float(world.profile_of(road).middle(s))
             if not any(each.start < s < each.end for each in road.passages):

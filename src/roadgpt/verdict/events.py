@@ -15,7 +15,7 @@ from roadgpt.language.names import Shown
 from roadgpt.language.table import MANEUVERS
 from roadgpt.traffic.script import how_many
 from roadgpt.traffic.traffic import ENDED
-from roadgpt.verdict.criteria import NAMED, Judged
+from roadgpt.verdict.criteria import HITS, NAMED, Judged
 from roadgpt.verdict.oracle import has_departed
 from roadgpt.verdict.verdict import Incident
 
@@ -25,10 +25,11 @@ SHOWN: tuple[Shown, ...] = ("green", "yellow", "red")
 """By the numbers of the lights."""
 
 
-def events_of(case: Judged, incidents: Sequence[Incident], hits: Sequence[Event]) -> tuple[Event, ...]:
-    """Returns the events of a drive in order of time, and then what did not happen."""
+def events_of(case: Judged, incidents: Sequence[Incident], why: str) -> tuple[Event, ...]:
+    """Returns the events of a drive in order of time, and then what did not happen; ``why`` nobody hit the
+    tested car who is to."""
     drive = case.drive
-    found = [*map(_ended, drive.history), *hits, *_lights(case), *_out_of_lane(case)]
+    found = [*map(_ended, drive.history), *_told_hits(case, why), *_lights(case), *_out_of_lane(case)]
     for each in incidents:
         if each.kind != "out of lane":
             what = (
@@ -43,14 +44,13 @@ def events_of(case: Judged, incidents: Sequence[Incident], hits: Sequence[Event]
     return tuple(sorted(map(_rounded, found), key=lambda each: np.inf if each.time is None else each.time))
 
 
-def told_hits(case: Judged, why: str) -> Iterator[Event]:
-    """Yields those who are to hit the tested car where the scene tells, and if they never touched it, why."""
+def _told_hits(case: Judged, why: str) -> Iterator[Event]:
     kinds = Counter[str]()
     for number, role in enumerate(case.world.scene.actors if case.drive.others else ()):
         kinds[role.kind] += how_many(role, number, case.drive.seed)
         if role.hits not in STRUCK:
             continue
-        who, what = f"{role.kind} {kinds[role.kind]}", f"hits the tested car's {role.hits}"
+        who, what = f"{role.kind} {kinds[role.kind]}", f"{HITS}{role.hits}"
         hit = next((each for each in case.contacts if each.other == who), None)
         face = hit and hit.contact and hit.contact.face
         if hit and face in (("left", "right") if role.hits == MIRROR else (role.hits,)):

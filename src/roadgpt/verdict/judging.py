@@ -15,6 +15,7 @@ from roadgpt.road.world import share_in_words
 from roadgpt.traffic.traffic import LATE, NEVER
 from roadgpt.verdict.criteria import (
     FREE,
+    HITS,
     NAMED,
     ROBOT,
     STEERED,
@@ -125,8 +126,9 @@ def judge(
     elif drive.missed:
         description += "".join(f"; {each}" for each in drive.missed if not each.endswith(LATE))
     is_robots = drive.driver == ROBOT and outcome == "PASS"
-    hits = _hits(case, AVOIDED if failed is None and not is_robots else NOT_MET)
-    never = [f"{each.who} {each.what}: {each.why}" for each in hits if each.time is None]
+    events = _events(case, incidents, NOT_MET if failed or is_robots else AVOIDED)
+    told = [each for each in events or () if each.what.startswith(HITS) and each.time is None]
+    never = [f"{each.who} {each.what}: {each.why}" for each in told]
     if never and is_robots:
         outcome, description = "INVALID", f"did not happen: {' and '.join(never)}; {description}"
     else:
@@ -148,7 +150,7 @@ def judge(
         at_time=time if failed else None,
         side=side,
         incidents=incidents if case.is_route or drive.others is not None else None,
-        events=_events(case, incidents, hits),
+        events=events,
         least_gap=gap,
         least_ttc=ttc,
         own_share=drive.shares.get(drive.driver),
@@ -161,20 +163,12 @@ def judge(
     )
 
 
-def _hits(case: Judged, why: str) -> tuple[Event, ...]:
-    if all(each.hits not in STRUCK for each in case.world.scene.actors):
-        return ()
-    from roadgpt.verdict.events import told_hits
-
-    return tuple(told_hits(case, why))
-
-
-def _events(case: Judged, incidents: Sequence[Incident], hits: Sequence[Event]) -> tuple[Event, ...] | None:
+def _events(case: Judged, incidents: Sequence[Incident], why: str) -> tuple[Event, ...] | None:
     if case.drive.others is None and not (case.drive.handovers or case.drive.history):
         return None
     from roadgpt.verdict.events import events_of
 
-    return events_of(case, incidents, hits) or None
+    return events_of(case, incidents, why) or None
 
 
 def _blame(
