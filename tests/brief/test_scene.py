@@ -44,7 +44,7 @@ def test_a_scene_comes_back_from_its_plan_with_any_road(brief: Brief, scene: Sce
     [
         ("ego v=30: stop s=350", 350.0),
         ("ego v=50; slippery s=340", 340.0),
-        ("ego v=50; car ahead s=380", 380.0),
+        ("ego v=30; car ahead s=350", 350.0),
     ],
 )
 def test_a_road_whose_length_is_told_reaches_the_places_that_are_told(scene: str, last: float) -> None:
