@@ -127,8 +127,8 @@ def judge(
         description += "".join(f"; {each}" for each in drive.missed if not each.endswith(LATE))
     is_robots = drive.driver == ROBOT and outcome == "PASS"
     events = _events(case, incidents, NOT_MET if failed or is_robots else AVOIDED)
-    told = [each for each in events or () if each.what.startswith(HITS) and each.time is None]
-    never = [f"{each.who} {each.what}: {each.why}" for each in told]
+    unmet = [each for each in events or () if each.what.startswith(HITS) and each.time is None]
+    never = [f"{each.who} {each.what}: {each.why}" for each in unmet]
     if never and is_robots:
         outcome, description = "INVALID", f"did not happen: {' and '.join(never)}; {description}"
     else:
