@@ -74,13 +74,7 @@ class BeamngSimulator:
         raise AssertionError
 
     def _once(
-        self,
-        session: Session,
-        road: Road,
-        world: World,
-        driver: Driver,
-        seed: int,
-        keep_driving: bool,
+        self, session: Session, road: Road, world: World, driver: Driver, seed: int, keep_driving: bool
     ) -> Drive:
         camera = camera_of(driver)
         ai_drives = getattr(driver, "name", "") == IMITATES and not self.settings.imitation

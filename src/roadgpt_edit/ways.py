@@ -22,14 +22,7 @@ from roadgpt.design.elements import straight, turn_segments
 from roadgpt.errors import EditError, UsageError
 from roadgpt.road import Segment, World
 from roadgpt.road.design import MAX_TURN
-from roadgpt_edit.places import (
-    LEAST_FOR_HILL,
-    PlacedChange,
-    RoadStretch,
-    pieces,
-    too_short_for_hill,
-    within,
-)
+from roadgpt_edit.places import LEAST_FOR_HILL, PlacedChange, RoadStretch, pieces, too_short_for_hill, within
 from roadgpt_edit.road_elements import (
     FREE_STRAIGHT,
     MILLIMETRE,

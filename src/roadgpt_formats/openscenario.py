@@ -17,13 +17,7 @@ import numpy as np
 from shapely.geometry import LineString
 
 from roadgpt.brief.visibility import LOW_SUN, amount_in
-from roadgpt.export.ego import (
-    CAR,
-    Poses,
-    Trajectories,
-    goal_of,
-    start_of,
-)
+from roadgpt.export.ego import CAR, Poses, Trajectories, goal_of, start_of
 from roadgpt.export.exporters.opendrive import OpenDrive
 from roadgpt.export.exporters.opendrive.signals import Signals
 from roadgpt.export.markup import Value, XmlElement

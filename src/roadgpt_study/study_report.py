@@ -29,10 +29,7 @@ from roadgpt_study.validity import NAME, THESIS_LEFT, THESIS_VALID, departures, 
 
 PROBLEMS = "problems.json"
 MOST_BETWEEN = 40  # roads of a study part that are compared with those of another part
-BESIDE = (
-    f"; {NAME} had {THESIS_VALID.share} by its own checks",
-    f"; in the thesis on {THESIS_LEFT.share}",
-)
+BESIDE = (f"; {NAME} had {THESIS_VALID.share} by its own checks", f"; in the thesis on {THESIS_LEFT.share}")
 
 
 def keep_problems(folder: Path, problems: Sequence[Problem]) -> None:

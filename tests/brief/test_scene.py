@@ -15,6 +15,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import plan, read_plan, read_scene, scene_plan
 from roadgpt.brief.readers.chat import RULES
 from roadgpt.brief.scene import Action, Lie, Role, Scene, scene_text, with_named
+from roadgpt.brief.scene_fit import fitted
 from roadgpt.brief.sentence import sentence
 from roadgpt.errors import BriefError
 from roadgpt.language.names import ActorKind, Landform, Surface
@@ -36,6 +37,24 @@ def test_a_scene_comes_back_from_its_plan_with_any_road(brief: Brief, scene: Sce
     assert plan(whole).partition(" && ")[0].removesuffix("&&").strip() in (plan(brief), "", plan(whole))
     assert ("&&" in plan(whole)) == (scene != Scene())
     assert Brief.model_validate_json(whole.model_dump_json()) == whole
+
+
+@pytest.mark.parametrize(
+    ("scene", "last"),
+    [
+        ("ego v=30: stop s=350", 350.0),
+        ("ego v=50; slippery s=340", 340.0),
+        ("ego v=30; car ahead s=350", 350.0),
+    ],
+)
+def test_a_road_whose_length_is_told_reaches_the_places_that_are_told(scene: str, last: float) -> None:
+    """A length that is told may be 15 % shorter."""
+    brief = read_plan(f"straight 400 && {scene}")
+    length = fitted(brief, brief.scene, 50 / 3.6).length
+    assert length is not None
+    assert last < (length.lo or 0.0) <= 400.0
+    free = read_plan("straight 400 && ego v=30: stop s=200")
+    assert fitted(free, free.scene, 50 / 3.6).length is None
 
 
 @given(SCENES)

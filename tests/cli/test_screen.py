@@ -39,7 +39,7 @@ def test_a_pass_outside_the_lane_does_not_look_like_one_inside() -> None:
     assert NEARLY.to_line().startswith("PASS (62 % out, 1.13 m)")
     assert KEPT.to_line().startswith("PASS    ")
     assert replace(NEARLY, beyond_m=None).to_line().startswith("PASS (62 % out) ")
-    assert replace(NEARLY, max_oob=1e-5).to_line().startswith("PASS (0.001 % out, ")
+    assert replace(NEARLY, max_oob=1e-5).to_line().startswith("PASS (<0.1 % out, ")
     slightly = replace(NEARLY, max_oob=0.2, beyond_m=0.3)
     assert len({colour_of(row.outcome) for row in (KEPT, slightly, NEARLY, LEFT, WRONG)}) == 5
     assert summary([NEARLY, KEPT, slightly, replace(NEARLY, max_oob=0.9, beyond_m=1.5)]) == [

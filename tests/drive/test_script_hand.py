@@ -68,6 +68,18 @@ def test_it_stops_before_the_line_waits_and_creeps() -> None:
     assert at(drive, "speed", hand[2] + 6.0) > 8.0
 
 
+@pytest.mark.parametrize(
+    ("scene", "ends"),
+    [("", 4.0), (", speed 50 time=20", 8.0), (", stop s=80, wait 3", 12.0)],  # s of creeping, at least
+)
+def test_it_creeps_until_what_is_next_or_for_a_while(scene: str, ends: float) -> None:
+    drive = drive_of(f"straight 300 && ego v=30: stop 3 s=50, wait 2, creep{scene}", "robot")
+    stands = drive["time"][drive["speed"] < 0.1]
+    first = stands[np.argmax(np.diff(stands, append=np.inf) > 0.1)]
+    later = drive["time"] > first + 1.5
+    assert drive["speed"][later & (drive["time"] < first + ends)].max() < 6.0 / 3.6
+
+
 def test_it_waits_for_what_another_one_does() -> None:
     scene = (
         "ego v=50: stop 3 s=60, creep after truck 1 brake; truck oncoming gap=300 v=50: brake 4 to=20 time=14"
@@ -203,6 +215,39 @@ def test_a_driver_that_brakes_hard_ends_the_script() -> None:
     assert aside.max() < 1.2
     assert abs(at(during, "t", end) - at(during, "t", 4.0)) < 0.2
     assert "gave up while the tested car drifts" in during.limited[0]
+
+
+def test_the_brake_after_a_contact_is_no_refusal_of_the_script() -> None:
+    words = "straight 400 && ego v=50: brake 2 to=20 time=4, brake 3 time=8; car behind v=50 gap=12"
+    found = run_of(words, "lane_centring")
+    assert found.drive is not None
+    assert found.drive.ended == "collision"
+    assert found.drive.duration > 8.5
+    assert "gave up" not in found.description
+
+
+def test_overtaking_that_ends_in_a_crash_has_happened() -> None:
+    others = "truck ahead gap=40 v=30; car oncoming v=60 gap=160"
+    found = run_of(f"straight 600 | lanes=1 against=1 && ego v=60: overtake truck 1; {others}", "robot")
+    assert found.verdict is not None
+    assert found.verdict.cause == "collision"
+    (event,) = [each for each in found.verdict.events or () if each.what.startswith("overtakes")]
+    assert event.time is not None
+    assert "never happened" not in found.description
+
+
+def test_who_reverses_past_where_it_pulled_out_stays_in_its_lane() -> None:
+    scene = "ego parked right s=60: pull_out, keep for=1, reverse for=25 to=8"
+    found = run_of(f"straight 400 && {scene}", "lane_centring")
+    assert found.drive is not None
+    assert found.verdict is not None
+    assert found.outcome == "PASS", found.description
+    assert not [each for each in found.verdict.events or () if each.what == "out of its lane"]
+    drive, back = found.drive, found.drive.handovers[-1].end
+    assert at(drive, "s", back) < 50.0
+    later, parked = drive["time"] > back, at(drive, "t", 1.0)
+    assert np.ptp(drive["t"][later]) < 1.5  # it does not go back to where it was parked
+    assert abs(drive["t"][later] - parked).min() > 2.0
 
 
 def test_who_drove_is_said_and_what_never_happened() -> None:

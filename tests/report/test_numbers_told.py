@@ -49,6 +49,7 @@ from roadgpt.verdict.judging import far_beyond
         (of_car(0.9996), "99.9 %"),
         (of_car(0.004), "0.4 %"),
         (of_car(0.0), "0 %"),
+        (of_car(1e-5), "<0.1 %"),
         (of_car(1.0), "100 %"),
         (far_beyond(0.004), "on the marking"),
         (far_beyond(0.126), "0.13 m beyond the marking"),

@@ -392,6 +392,28 @@ def test_roadworks_for_which_a_road_has_no_place_are_refused(works, says):
         works_rows(road, bare, 1)
 
 
+@pytest.mark.parametrize("scene", ["ego parked right: pull_out; roadworks closed s=5",
+                                   "ego v=0: release time=4; roadworks narrowed s=1 shift=2.5"])  # fmt: skip
+def test_roadworks_in_the_way_of_the_car_at_its_start_are_refused_by_one_sentence(scene):
+    road, world, _ = made("straight 400 | lanes=1 against=1")
+    with pytest.raises(UsageError, match=r"roadworks .* in the way of the tested car, .* or later"):
+        works_rows(road, world.changed(scene=scene), 1)
+    moved = re.sub(r"s=\d", "s=40", scene)
+    assert works_rows(road, world.changed(scene=moved), 1)
+
+
+def test_a_closed_lane_is_passed_as_a_whole_where_the_oncoming_lane_is_free():
+    words = "straight 400 | lanes=1 against=1 && ego v=40: pass; roadworks closed s=150"
+    run = perform(words, 1, setup=Setup(reader="plan", driver="robot"))
+    assert run.outcome == "PASS", run.description
+    drive = run.drive
+    boxes = [shapely.Polygon(corners(s[:2], s[3], np.array(a.size))) for a, s in zip(
+        drive.others.actors, drive.others.states[0], strict=True)]  # fmt: skip
+    way = [shapely.Polygon(drive.corners(step)) for step in range(0, len(drive), 5)]
+    assert len(boxes) > 10
+    assert 0.5 < min(one.distance(box) for one in way for box in boxes) < 2.0
+
+
 def test_who_waits_before_a_closed_lane_that_nothing_leads_past_has_not_failed():
     """One lane, one way."""
     run = perform("| oneway len=400 && ego v=40; roadworks closed s=120", 1, setup=Setup(reader="plan"))

@@ -8,6 +8,7 @@ import pytest
 
 from roadgpt.drive import Columns, Drive
 from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.traffic.actor import SIZES
 from roadgpt.verdict.measures import Measures, measure
 from staged import BOX, among, driven, level, straight, tracks
 
@@ -43,6 +44,15 @@ def test_following_at_even_speeds() -> None:
     np.testing.assert_allclose(found.headway[reached, 0], gap[reached] / 20, atol=2e-3)
     assert np.isinf(found.headway[-1, 0])
     assert np.isinf(found.pet[0])
+
+
+def test_cones_beside_the_way_of_the_body_are_not_ahead_of_it() -> None:
+    beside, before = ("cones", straight(60, -3.4, 0, 0)), ("cones", straight(60, -2.6, 0, 0))
+    found = measured(along(20, begin=20), 1.0, beside=beside, before=before)
+    assert np.isinf(found.gap[:, 0]).all()
+    assert np.isinf(found.ttc[:, 0]).all()
+    gap = 40 - HALF - SIZES["cones"].length / 2 - 20 * found.time
+    np.testing.assert_allclose(found.ttc[:, 1], gap / 20, atol=2e-3)
 
 
 def test_who_is_behind_beside_or_away_has_no_time_to_collision() -> None:

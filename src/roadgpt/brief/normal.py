@@ -9,15 +9,7 @@ for none, unless it asks for '0 or more turns'."""
 from collections.abc import Iterable, Sequence
 from math import inf
 
-from roadgpt.brief.model import (
-    OTHER_SIDE,
-    Amount,
-    Brief,
-    Clause,
-    at_least,
-    exactly,
-    span,
-)
+from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, Clause, at_least, exactly, span
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.words import KINDS
 from roadgpt.language.names import Side, Slope

@@ -13,13 +13,7 @@ from roadgpt.brief.amount import about
 from roadgpt.brief.design_speed import SpeedLimits, limits_at
 from roadgpt.brief.map_fit import has_low_grades, has_wide_turns
 from roadgpt.brief.model import Amount, Brief, Clause, span
-from roadgpt.brief.normal import (
-    BUMPS,
-    clauses_turn,
-    turns_of,
-    with_continued_grades,
-    with_like_numbers,
-)
+from roadgpt.brief.normal import BUMPS, clauses_turn, turns_of, with_continued_grades, with_like_numbers
 from roadgpt.brief.ranges import Range, overlap
 from roadgpt.brief.words import (
     FEATURE,

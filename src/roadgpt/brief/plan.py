@@ -22,21 +22,8 @@ from pydantic import ValidationError
 
 from roadgpt.brief.amount import amount_text, figure, read_amount
 from roadgpt.brief.design_speed import FASTEST, SLOWEST, USUAL
-from roadgpt.brief.junctions import (
-    LONGEST_ROUTE,
-    MAP,
-    JunctionClause,
-    JunctionCount,
-    MapClause,
-)
-from roadgpt.brief.model import (
-    Amount,
-    Brief,
-    Clause,
-    Frozen,
-    exactly,
-    span,
-)
+from roadgpt.brief.junctions import LONGEST_ROUTE, MAP, JunctionClause, JunctionCount, MapClause
+from roadgpt.brief.model import Amount, Brief, Clause, Frozen, exactly, span
 from roadgpt.brief.normal import BUMPS
 from roadgpt.brief.refusal import refused
 from roadgpt.brief.scene import (
@@ -57,10 +44,7 @@ from roadgpt.brief.scene import (
 )
 from roadgpt.brief.words import LARGEST_MAP, SMALLEST_MAP
 from roadgpt.errors import BriefError
-from roadgpt.language.names import (
-    MapJunctionKind,
-    Way,
-)
+from roadgpt.language.names import MapJunctionKind, Way
 from roadgpt.language.table import (
     COUNTED,
     FLOWS,

@@ -19,7 +19,7 @@ from roadgpt.brief.outline import outline
 from roadgpt.brief.ranges import Range
 from roadgpt.brief.scene import HEAD_ON, LEAVES, MOST_MORE, Action, Role, Scene
 from roadgpt.brief.scene_places import check_scene, comes_to_junction, with_places
-from roadgpt.brief.words import MOTORWAY_RADIUS
+from roadgpt.brief.words import LENGTH_SLACK, MOTORWAY_RADIUS, ROAD_LENGTH_SLACK
 from roadgpt.errors import BriefError
 from roadgpt.language.table import ACROSS, MOVING, SIZES, USUAL_SPEEDS
 
@@ -53,13 +53,14 @@ def fitted(brief: Brief, scene: Scene, limit: float, map_size: float | None = No
     if brief.map is not None or not any(needs):
         return brief
     speed = _most(scene.speed) / KMH if scene.speed else limit
-    before, stop = _until_stop(scene, speed, brief) + _most(scene.station), speed**2 / 2 / STOPS
+    before, stop = _until_stop(scene, speed, limit, brief) + _most(scene.station), speed**2 / 2 / STOPS
     lanes = scene.lanes_needed(brief.left_hand)
     if not brief.stretches:
         grip = G * (friction_of((*scene.surfaces, *brief.beside)) or 1.0)
         slides = before + speed**2 / 2 / min(STOPS, grip)
         side, far = map_size or brief.map_size, max(_until_met(scene, speed), slides)
-        return _suited(brief, scene, lanes, speed, before, before + stop, side, far)
+        suited = _suited(brief, scene, lanes, speed, before, before + stop, side, far)
+        return _surely_as_long(suited, _told(scene, speed, limit) + _most(scene.station) + SPARE)
     places = [each for each in brief.junctions if each.kind not in (*LANE_KINDS, *RAMPS)]
     crosses = any(role.where == "crosswalk" for role in scene.actors)
     places = places or [each for each in brief.junctions if each.kind == "crosswalk" and crosses]
@@ -90,7 +91,7 @@ def fitted(brief: Brief, scene: Scene, limit: float, map_size: float | None = No
     return brief.model_copy(update={"stretches": stretches, "junctions": tuple(junctions)})
 
 
-def _until_stop(scene: Scene, speed: float, brief: Brief) -> float:
+def _until_stop(scene: Scene, speed: float, limit: float, brief: Brief) -> float:
     """Returns how far the tested car comes until everything has happened, in metres."""
     lanes = [(road.lanes_text or "1+1").split("+") for road in brief.stretches or (brief,)]
     along, against = (max(map(int, each)) for each in zip(*lanes, strict=True))
@@ -100,16 +101,25 @@ def _until_stop(scene: Scene, speed: float, brief: Brief) -> float:
     seconds = [ROLLS, *(_lasts(role, speed, near if role.side in kerbs else far) for role in roles)]
     moves = [each for each in scene.actions if each.what not in STANDS]
     seconds.append(_ends(moves, speed))
-    named = [role.station for role in roles] + [each.station for role in roles for each in role.actions]
-    named += [each.station or each.distance for each in scene.actions]
-    named += [each.station for each in scene.slippery]
-    for each in scene.roadworks:
-        first = _most(each.station) or ROLLS * speed
-        seconds.append(each.stations(first, _most(each.length), LANE, speed)[-1] / max(speed, 1.0))
-    named += [role.gap for role in roles if role.where == "oncoming"]
+    gaps = [role.gap for role in roles if role.where == "oncoming"]
     longest = max(_length(road).hi for road in brief.stretches or (brief,))
     least = FOR_FLOW if scene.has_flow and longest > FOR_FLOW + SPARE + speed**2 / 2 / STOPS else 0.0
-    return max(max(seconds) * speed, *map(_most, named), least) + sum(map(_row, roles)) + SPARE
+    return (
+        max(max(seconds) * speed, _told(scene, speed, limit), *map(_most, gaps), least)
+        + sum(map(_row, roles))
+        + SPARE
+    )
+
+
+def _told(scene: Scene, speed: float, limit: float) -> float:
+    """Returns the last of the places along the road that a scene tells, in metres."""
+    acts = [each for role in scene.actors for each in role.actions]
+    every = (*scene.actions, *acts, *scene.slippery, *scene.actors)
+    ends = [_most(getattr(each, name, None)) for each in every for name in ("station", "distance")]
+    for each in scene.roadworks:
+        first = _most(each.station) or ROLLS * speed
+        ends.append(each.stations(first, _most(each.length), LANE, limit)[-1])
+    return max(ends, default=0.0)
 
 
 def _until_met(scene: Scene, speed: float) -> float:
@@ -215,6 +225,14 @@ def _long_enough(
             f" stop, and {have.hi:g} m are asked for; ask for a longer road, or for a slower car"
         )
     return _as_long(road, metres)
+
+
+def _surely_as_long(road: Brief, metres: float) -> Brief:
+    """Asks of a road for a length in metres that it has but for the slack of lengths that are told."""
+    least, slack = _length(road).lo, ROAD_LENGTH_SLACK if road.length else LENGTH_SLACK
+    if not least * (1 - slack) < metres <= least:
+        return road
+    return road.model_copy(update={"length": Amount(lo=metres, hi=road.length and road.length.hi)})
 
 
 def _as_long(road: Brief, metres: float) -> Brief:

@@ -2,21 +2,8 @@
 
 from collections.abc import Iterator, Mapping
 
-from roadgpt.brief.junctions import (
-    LANE_KINDS,
-    NAMES,
-    SIGNS,
-    JunctionClause,
-    JunctionCount,
-    MapClause,
-)
-from roadgpt.brief.model import (
-    Amount,
-    Brief,
-    Clause,
-    at_least,
-    exactly,
-)
+from roadgpt.brief.junctions import LANE_KINDS, NAMES, SIGNS, JunctionClause, JunctionCount, MapClause
+from roadgpt.brief.model import Amount, Brief, Clause, at_least, exactly
 from roadgpt.brief.normal import BUMPS, STRAIGHT, normal
 from roadgpt.brief.scene import scene_text
 from roadgpt.brief.words import FEATURE, KINDS, OVER, SLOPES

@@ -199,7 +199,7 @@ class Plan(PlanChoices):
                 brief = brief or Brief()
             else:
                 request = request.model_copy(update={"world": (world := world_for(brief, request.world))})
-                brief = brief and fitted(brief, world.scene, world.first_speed, world.given_map)
+                brief = brief and fitted(brief, world.scene, world.limits.speed_limit, world.given_map)
             made.append((request, generator, brief))
         wide = max(2, len(str(len(made))))
         return [

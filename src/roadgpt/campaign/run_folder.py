@@ -20,14 +20,7 @@ from roadgpt.campaign.model import PATIENCE, WITHOUT_GOAL, Cell, CellBudget
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import STORE, Record, Store
 from roadgpt.campaign.scheduler import Scheduler
-from roadgpt.campaign.single_test import (
-    FinishedTest,
-    Task,
-    WorkerSetup,
-    error_run,
-    finished_run,
-    run_test,
-)
+from roadgpt.campaign.single_test import FinishedTest, Task, WorkerSetup, error_run, finished_run, run_test
 from roadgpt.campaign.workers import LOG, InProcess, WorkerConfig
 from roadgpt.chat import ChatError, Meter, Spent
 from roadgpt.design import designer_of

@@ -27,13 +27,7 @@ from roadgpt import check
 from roadgpt.brief.amount import Amount, at_least, between, exactly, span
 from roadgpt.brief.design_speed import limits_at
 from roadgpt.brief.junction_check import check_junction, faults_beside_ramps
-from roadgpt.brief.junctions import (
-    LANE_KINDS,
-    RAMPS,
-    JunctionClause,
-    MapClause,
-    side_of,
-)
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, MapClause, side_of
 from roadgpt.brief.map_fit import EDGE, LEADS
 from roadgpt.brief.model import Brief, Clause, mirrored
 from roadgpt.brief.normal import BUMPS

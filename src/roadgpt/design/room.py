@@ -79,7 +79,7 @@ def lane_remarks(brief: Brief, usual: World, found: World) -> Iterator[str]:
 
 def need_remark(brief: Brief, found: World) -> str:
     """Returns a sentence on what the scene needs of the road and the words leave open; empty if nothing."""
-    asked = fitted(brief, found.scene, found.first_speed, found.given_map)
+    asked = fitted(brief, found.scene, found.limits.speed_limit, found.given_map)
     return "" if asked == brief else f"the scene needs more than the words say: {plan(asked)}"
 
 

@@ -6,6 +6,7 @@ import zipfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
 
@@ -231,7 +232,8 @@ class Drive:
     @cached_property
     def counts(self) -> NDArray[np.bool_]:
         """At which steps the verdict checks whether the car is in its lane, shape (n,): those of
-        ``lane_steps`` but for those at which the script steers, or did RETURNS seconds before."""
+        ``lane_steps`` but for those at which the script steers, or did RETURNS seconds before, or the car
+        was where it has reversed since then into another lane."""
         time, found = self["time"], np.arange(len(self)) < self.lane_steps
         for each in self.handovers:
             if each.by == SCRIPT:
@@ -239,6 +241,8 @@ class Drive:
         for task in self.tasks:
             if task.what == "change_lane":
                 found &= ~((time > task.start) & (time <= task.end + RETURNS))
+        if any(later.start < move.end for move, later in pairwise(self.moves)):
+            found &= self["s"] < np.minimum.accumulate(self["s"][::-1])[::-1] + SLACK
         return found
 
     @property

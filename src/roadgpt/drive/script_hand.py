@@ -7,7 +7,7 @@ the new one. In a test, the robot drives until the event begins, and the drive e
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -28,7 +28,7 @@ from roadgpt.traffic.actor import STILL
 from roadgpt.traffic.course import Course, Met
 from roadgpt.traffic.lateral import Lateral, Offsets
 from roadgpt.traffic.longitudinal import Longitudinal
-from roadgpt.traffic.maneuver import CHANGE, FAST, LATERAL, STOP, Maneuver, Phase, drawn
+from roadgpt.traffic.maneuver import CHANGE, FAST, LATERAL, ROLL, STOP, Maneuver, Phase, drawn
 from roadgpt.traffic.places import SIGN, offset_of, stretch_of
 from roadgpt.traffic.traffic import ENDED, NEVER, T0, Stage
 from roadgpt.traffic.triggers import Triggers
@@ -58,7 +58,7 @@ CLEAR_OF_PEOPLE = 1.5  # m, also of who rides a bicycle: Germany, StVO, section 
 EARLY = 1.0  # s, before it would have to begin to go around somebody
 FOLLOWING = 2.0  # s of headway, with which it still follows whom it overtakes
 EDGE = 0.2  # m, from the edge of the shoulder, or the road, where it pulls over
-ROW = 15.0  # m between those that stand in one row
+ROW, CONES = 15.0, 1.5  # m between those that stand in one row; s at the limit between cones of roadworks
 PASSED = {"overtake": 10.0, "pass": 2.0}  # m, behind its rear, where it goes back
 TASKS = ("speed", "brake", "stop", "creep", "change_lane")
 """What a driver may do itself."""
@@ -130,6 +130,7 @@ class ScriptHand:
         """The events of maneuvers that have begun, or never will."""
         self._around = ""
         """Who is overtaken or passed."""
+        self.has_crashed, self._hand = False, cast("str | None", None)
         event = "past" if traffic is None else traffic.event
         self._has_event = world.scene.is_test and (bool(self._maneuvers) or event != "past")
         is_robot = getattr(driver, "name", "") == Robot.name
@@ -180,12 +181,20 @@ class ScriptHand:
 
     def _move(self, by: float, lateral: float) -> None:
         """Moves the lane by some metres to the left, with a speed sideways of at most so many m/s."""
-        v, long = self._speed.v, self._long(by, lateral)
         s = self._line.to_road(self._course.s - self._box.ahead)
-        self.moves = (*self.moves, LaneMove(s, s + long, by))
-        profile = self._world.profile_of(self.road)
-        triggers = self._triggers
-        self._follow(self.road.with_profile(profile.moved(*self.moves[-1])))
+        self._lay(LaneMove(s, s + self._long(by, lateral), by))
+
+    def _stay(self, s: float, back: float) -> None:
+        """Stays in the lane that it has at a station, if so many metres before that it had another one."""
+        profile, end = self._world.profile_of(self.road), s - back - self._box.length
+        if by := profile.aside_at(s) - profile.aside_at(end):
+            self._lay(LaneMove(end - 1.0, end, by))
+
+    def _lay(self, move: LaneMove) -> None:
+        """Moves the lane between two stations."""
+        s, triggers, v = self._line.to_road(self._course.s - self._box.ahead), self._triggers, self._speed.v
+        self.moves = (*self.moves, move)
+        self._follow(self.road.with_profile(self._world.profile_of(self.road).moved(*move)))
         self._course.s, self._speed.v = self._line.from_road(s) + self._box.ahead, v
         self._triggers.time, self._triggers.signs = triggers.time, triggers.signs
         self._lateral.t, self._lateral.slope, self._lateral.slide = 0.0, 0.0, None
@@ -250,7 +259,13 @@ class ScriptHand:
 
     def shared(self, view: View, command: Pedals) -> tuple[Pedals, str | None]:
         """Returns the command that counts, of the driver's and the script's, and the name of the script's
-        hands; None if it has none. Call it once for every control step."""
+        hands; None if it has none. Call it once for every control step. Nothing begins or ends any more once
+        the car ``has_crashed``: it brakes then whatever anybody says."""
+        if not self.has_crashed:
+            command, self._hand = self._shared(view, command)
+        return command, self._hand
+
+    def _shared(self, view: View, command: Pedals) -> tuple[Pedals, str | None]:
         self._see(view)
         self._go_on(view)
         self._begin_in_time(view)
@@ -417,15 +432,27 @@ class ScriptHand:
         first = int(np.where(is_it, ahead, np.inf).argmin())
         half, wide = (float(each[first]) for each in boxes.reach)
         low, high = float(boxes.along[first]) - half, float(boxes.along[first]) + half
-        stands = np.hypot(*boxes.velocity.T) < STILL
-        in_row = np.abs(boxes.t - boxes.t[first]) < boxes.reach[1] + wide
-        in_row &= stands & stands[first] & np.isfinite(ahead) & (name is not None)
-        for each in np.argsort(np.abs(ahead - ahead[first])):  # the nearest ones first
+        left, right = float(boxes.t[first]) + wide, float(boxes.t[first]) - wide
+        stands, aside = np.hypot(*boxes.velocity.T) < STILL, np.abs(boxes.t - boxes.t[first])
+        are_cones, far = actors[first].kind in THINGS, ROW
+        in_row = stands & stands[first] & np.isfinite(ahead) & (aside < boxes.reach[1] + wide)
+        if are_cones:  # of roadworks, which lead aside
+            far, one = (
+                max(ROW, CONES * self._world.limits.speed_limit),
+                self._line.width_at(boxes.along[first]),
+            )
+            in_row = [each.kind in THINGS for each in actors] & stands & (aside < one)
+        for each in (
+            np.argsort(np.abs(ahead - ahead[first])) if name or are_cones else ()
+        ):  # the nearest first
             begin, end = boxes.along[each] - boxes.reach[0][each], boxes.along[each] + boxes.reach[0][each]
-            if in_row[each] and begin - ROW < high and end + ROW > low:
+            if in_row[each] and begin - far < high and end + far > low:
                 low, high = min(low, float(begin)), max(high, float(end))
-        met = Met((low + high) / 2, float(boxes.velocity[first, 0]), high - low, 2 * wide)
-        return actors[first].name, met, float(boxes.t[first])
+                if are_cones:
+                    t, half = float(boxes.t[each]), float(boxes.reach[1][each])
+                    left, right = max(left, t + half), min(right, t - half)
+        met = Met((low + high) / 2, float(boxes.velocity[first, 0]), high - low, left - right)
+        return actors[first].name, met, (left + right) / 2
 
     def _begin_in_time(self, view: View) -> None:
         """Begins what is next if it is time."""
@@ -455,17 +482,18 @@ class ScriptHand:
                 self._go_aside(each, view)
             elif each.what in ("reverse", "u_turn"):
                 self._shunt = Shunt(self.road, self._world, self._box, each, view)
+                if each.what == "reverse":
+                    self._stay(view.s, self._shunt.reach)
                 self._phases = [Phase(0.0, STOP, until="speed"), Phase(until="shunted")]
             elif number in self._stretches:
                 self._phases = self._through(each, *self._stretches[number])
             else:
                 self._phases = [] if each.what == "release" else self._triggers.phases(each)
             rest = self._maneuvers[self._begun :]
-            is_waiting = (
-                self._world.scene.stays if not rest else not rest[0].is_open and "duration" not in each.n
-            )
-            if each.what in ("stop", "pull_over") and is_waiting:
-                self._phases.append(Phase(lasts=math.inf))
+            is_waiting, creeps = not rest[0].is_open if rest else self._world.scene.stays, each.what == "creep"
+            is_waiting |= creeps and self._begun in (*self._places, *self._ends, *self._stretches)
+            if "duration" not in each.n and (creeps or (each.what in ("stop", "pull_over") and is_waiting)):
+                self._phases.append(Phase(lasts=math.inf if is_waiting else ROLL))
             if self._phases:
                 self._enter(view)
                 if each.what in self._follows:
@@ -603,7 +631,8 @@ class ScriptHand:
                 self._skipped.append(f"{NEVER} {did}: it had left the road before")
             if self._phases:
                 self._enter(view)
-            if not self._phases or self._phases[0].lasts == math.inf:
+            what, stays = self._maneuvers[self._begun - 1].what, bool(self._phases) and self._phases[0].lasts
+            if not self._phases or (stays == math.inf and what != "creep"):
                 self._tell("after", self._maneuvers[self._begun - 1], view)
         if not self._phases:
             return
@@ -683,7 +712,7 @@ class ScriptHand:
     def missed(self) -> tuple[str, ...]:
         """What the car was told to do and has not begun so far, in sentences."""
         found = list(self._skipped)
-        if self._around and self._phases:
+        if self._around and self._phases and not self.has_crashed:
             found.append(f"{NEVER} {self._did(self._begun - 1)}: it had not come past")
         elif self._phases and self._maneuvers[self._begun - 1].what in INTO_LANE:
             stands = self._speed.v < ROLLS and self._triggers.time - self._since > LONG

@@ -43,6 +43,11 @@ class Shunt:
         self._halts = False
         self.is_done = False
 
+    @property
+    def reach(self) -> float:
+        """How many metres it reverses at most."""
+        return self._n.get("duration", LASTS) * self._n.get("to", REVERSING)
+
     def command(self, view: View) -> tuple[float, float, float]:
         """Returns steering angle in radians, throttle (negative in reverse gear) and brake for now."""
         along = wrap_angle(view.heading - float(self._road.heading(view.s)))

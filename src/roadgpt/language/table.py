@@ -9,17 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Literal, NamedTuple, cast
 
-from roadgpt.language.names import (
-    ActorKind,
-    Flow,
-    Landform,
-    Light,
-    Surface,
-    WeatherKind,
-    What,
-    Where,
-    Works,
-)
+from roadgpt.language.names import ActorKind, Flow, Landform, Light, Surface, WeatherKind, What, Where, Works
 from roadgpt.reading import read_text
 
 Words = Mapping[str, tuple[tuple[str, str], ...]]

@@ -399,16 +399,15 @@ class World(BaseModel):
         Those that were given to this World are kept, even if they equal the defaults."""
         if brief is None or brief.is_of_network:
             return self
-        given = self.section.model_fields_set
-        wanted = {"lanes": brief.lanes_text, "centre_line": brief.centre}
-        changes = {name: value for name, value in wanted.items() if value is not None and name not in given}
-        return self.changed(**changes) if changes else self
+        return self._open(lanes=brief.lanes_text, centre_line=brief.centre)
 
     def with_numbers_of(self, brief: Brief | None) -> "World":
         """Returns the World with the width of lanes and the speed limit of a Brief, where none was given."""
-        if brief is None:
-            return self
-        wanted = {"lane_width": brief.lane_width, "speed_limit": brief.limit and brief.limit / KMH}
+        limit = brief and brief.limit and brief.limit / KMH
+        return self._open(lane_width=brief.lane_width, speed_limit=limit) if brief else self
+
+    def _open(self, **wanted: object) -> "World":
+        """Returns the World with those of some values that are asked for and were not given."""
         given = self.section.model_fields_set | self.limits.model_fields_set
         changes = {name: value for name, value in wanted.items() if value is not None and name not in given}
         return self.changed(**changes) if changes else self

@@ -123,7 +123,7 @@ def drafted(
     world = world_for(brief, setup.staged(world, brief.left_hand))
     request = Request(words=brief.words, seed=seed, world=world, setup=setup)
     found = request.world
-    brief = fitted(brief, found.scene, found.first_speed, found.given_map)
+    brief = fitted(brief, found.scene, found.limits.speed_limit, found.given_map)
     check_parts(setup, request.world)
     own = seed_of(seed, index)
     with counting(meter, f"road {index}"):

@@ -13,18 +13,7 @@ from roadgpt.traffic.traffic import Aiming, Mover, Stage, Traffic
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
-__all__ = [
-    "SIZES",
-    "STEP",
-    "Actor",
-    "Mover",
-    "Size",
-    "Stage",
-    "TestedCar",
-    "Tracks",
-    "Traffic",
-    "begin",
-]
+__all__ = ["SIZES", "STEP", "Actor", "Mover", "Size", "Stage", "TestedCar", "Tracks", "Traffic", "begin"]
 
 
 def begin(

@@ -40,6 +40,7 @@ WIDEST = (USUALLY_WIDEST, 1000.0, 4000.0)
 """The radii in metres of the widest bends that are turns: the wider ones if there are not enough others."""
 ROOM = 1.5  # m, from the middle of a way to the vehicles that are parked beside it
 SPACED = 0.682  # s at the limit, between cones of a taper: 1 ft for each mph (MUTCD, 6F.63); else twice
+TO_ENTER, LEAST_ROOM = 20.0, 5.0  # m before and behind the tested car, in which no roadworks stand in its way
 SIGN = {"left": 1.0, "right": -1.0}
 
 
@@ -162,8 +163,11 @@ def parked_rows(
 
 def works_rows(road: "Road", world: "World", seed: int) -> list[tuple[ActorKind, FloatArray]]:
     """Returns the cones of roadworks and what stands behind them, each with its state; nothing stands in
-    junctions. Raises SceneError if the road has no such place."""
-    found = list[tuple[ActorKind, FloatArray]]()
+    junctions. Raises SceneError if the road has no such place, or the tested car starts there."""
+    found, parks, start = list[tuple[ActorKind, FloatArray]](), world.scene.parks, world.start_on(road)
+    at_first = offset_of("parked", parks, start, road, world, SIZES["car"].width) if parks else 0.0
+    to_left = max(at_first, 0.0) + SIZES["car"].width / 2
+    to_right = min(at_first, 0.0) - SIZES["car"].width / 2
     for number, works in enumerate(world.scene.roadworks):
         n, row = drawn(works, np.random.default_rng([seed, 107, number])), ROADWORKS[works.kind]
         first = n.get("station", world.start_on(road) + ROLL * world.first_speed)
@@ -185,7 +189,13 @@ def works_rows(road: "Road", world: "World", seed: int) -> list[tuple[ActorKind,
             outer, inner, _ = _strip(works, s, road, world)
             into = float(np.interp(s, ends, [least, aside, aside, least])) - SIZES[kind].width / 2
             into = into if kind == "cones" else abs(inner - outer) / 2
-            t = float(world.profile_of(road).middle(s)) + outer + into * math.copysign(1.0, inner - outer)
+            t = outer + into * math.copysign(1.0, inner - outer)
+            if -LEAST_ROOM < s - start < TO_ENTER and to_right < t < to_left:
+                raise SceneError(
+                    f"{works} stand in the way of the tested car, which starts at {start:.0f} m; let them "
+                    f"begin at {start + TO_ENTER:.0f} m or later"
+                )
+            t += float(world.profile_of(road).middle(s))
             if not any(each.start < s < each.end for each in road.passages):
                 found.append((kind, np.array([*road.at(s, t), float(road.heading(s)), 0.0])))
     return found

@@ -6,7 +6,7 @@ from collections import Counter
 
 import numpy as np
 
-from roadgpt.brief.scene import HEAD_ON, LEAVES, MOST_MORE, STRUCK, Event
+from roadgpt.brief.scene import HEAD_ON, LEAVES, MOST_MORE, STRUCK, Event, Role
 from roadgpt.geometry.boxes import corners, touch
 from roadgpt.language.table import MANEUVERS
 from roadgpt.network.line import SPACING, driven_line
@@ -24,6 +24,13 @@ UNCOVERED = 3.0  # s that who changes lanes has left before who stands behind it
 IN_SIGHT = 150.0  # m ahead, in which somebody sees others in its lane
 BESIDE = 0.2  # m between two who pass each other, at least
 LATER = 20.0  # s to a collision, from which on there is no conflict yet: cruise control that follows wavers
+
+
+def how_many(role: Role, number: int, seed: int) -> int:
+    """Returns how many there are of the role of a scene with this number."""
+    low = int(role.count.lo or 1)
+    high = int(role.count.hi or low + MOST_MORE)
+    return int(np.random.default_rng([seed, number]).integers(low, high + 1))
 
 
 class Script:
@@ -64,9 +71,7 @@ class Script:
         for number, role in enumerate(self._stage.world.scene.actors):
             kinds[role.kind] += 1
             name, alike = (role.kind, str(kinds[role.kind])), list[Placing]()
-            low = int(role.count.lo or 1)
-            high = int(role.count.hi or low + MOST_MORE)
-            for copy in range(np.random.default_rng([self._stage.seed, number]).integers(low, high + 1)):
+            for copy in range(how_many(role, number, self._stage.seed)):
                 rng = np.random.default_rng([self._stage.seed, number, copy])
                 alike.append(Placing(self._stage, self._way, role, met, rng, alike, self.events))
             found += [Performer(each, None if each.copy else name) for each in alike]

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol
 
 import numpy as np
 
@@ -145,36 +145,36 @@ class Traffic:
         and is past when all have done everything and are in no conflict with it. Past without actors."""
         return next((mover.event for mover, _ in self._movers if hasattr(mover, "event")), "past")
 
+    def _all(self, name: str) -> list[Any]:
+        told = [getattr(mover, name, ()) for mover, _ in self._movers]
+        return [one for each in told for one in (each.items() if isinstance(each, dict) else each)]
+
     @property
     def events(self) -> dict[tuple[str, ...], float]:
         """When what the actors of a scene do has begun and ended, in seconds, by ``Maneuver.event``."""
-        return {
-            event: time for mover, _ in self._movers for event, time in getattr(mover, "events", {}).items()
-        }
+        return dict(self._all("events"))
 
     @property
     def happened(self) -> dict[str, float]:
         """What of the scene has begun, in words, and the station in metres along its road where the tested
         car was then."""
-        return {did: s for mover, _ in self._movers for did, s in getattr(mover, "happened", {}).items()}
+        return dict(self._all("happened"))
 
     @property
     def limited(self) -> dict[str, bool]:
         """What the others did with less than their scene or their habits ask for, in sentences, each with
         whether the road does not give what the scene prescribes."""
-        return {
-            said: is_it for mover, _ in self._movers for said, is_it in getattr(mover, "limited", {}).items()
-        }
+        return dict(self._all("limited"))
 
     @property
     def missed(self) -> tuple[str, ...]:
         """What of the scene has not happened so far, in sentences."""
-        return tuple(each for mover, _ in self._movers for each in getattr(mover, "missed", ()))
+        return tuple(self._all("missed"))
 
     @property
     def history(self) -> tuple[Event, ...]:
         """What the scene prescribes of its actors, each with whether it has happened so far."""
-        return tuple(each for mover, _ in self._movers for each in getattr(mover, "history", ()))
+        return tuple(self._all("history"))
 
     @property
     def stopped(self) -> tuple[str, ...]:

@@ -36,6 +36,7 @@ STOP_WITHIN = 4.0  # m before the line
 IN_LANE, NEAR = 0.5, 0.5  # m from the middle, m/s from the speed at which a task is done
 EDGE = 0.02  # m, by which a tyre may be beyond the polygon of the paved area, whose chords cut bends by 2 mm
 CONFLICT, ENCROACHED = 0.95, 1.0  # s
+ROBOT, HITS = "robot", "hits the tested car's "
 APART = 3.0  # s between two near misses
 STOOD, PATIENCE, FREE = 0.1, 30.0, 10.0  # m/s, s, m
 OVER, OVER_BY, TOO_FAST = 1.05, 1.0, 1.0  # ratio, m/s, s

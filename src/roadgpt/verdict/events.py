@@ -4,16 +4,18 @@ Beside what the scene prescribes, these are contacts and other incidents, where 
 lane, and who drove in its driver's place. Lights that are told "when the tested car comes" are those that
 show it the colour in the last COMES metres before their line."""
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from roadgpt.brief.scene import CAR, SIGNALS, Event
+from roadgpt.brief.scene import CAR, MIRROR, SIGNALS, STRUCK, Event
 from roadgpt.language.names import Shown
 from roadgpt.language.table import MANEUVERS
+from roadgpt.traffic.script import how_many
 from roadgpt.traffic.traffic import ENDED
-from roadgpt.verdict.criteria import NAMED, Judged
+from roadgpt.verdict.criteria import HITS, NAMED, Judged
 from roadgpt.verdict.oracle import has_departed
 from roadgpt.verdict.verdict import Incident
 
@@ -23,10 +25,11 @@ SHOWN: tuple[Shown, ...] = ("green", "yellow", "red")
 """By the numbers of the lights."""
 
 
-def events_of(case: Judged, incidents: Sequence[Incident]) -> tuple[Event, ...]:
-    """Returns the events of a drive in order of time, and then what did not happen."""
+def events_of(case: Judged, incidents: Sequence[Incident], why: str) -> tuple[Event, ...]:
+    """Returns the events of a drive in order of time, and then what did not happen; ``why`` nobody hit the
+    tested car who is to."""
     drive = case.drive
-    found = [*map(_ended, drive.history), *_lights(case), *_out_of_lane(case)]
+    found = [*map(_ended, drive.history), *_told_hits(case, why), *_lights(case), *_out_of_lane(case)]
     for each in incidents:
         if each.kind != "out of lane":
             what = (
@@ -39,6 +42,21 @@ def events_of(case: Judged, incidents: Sequence[Incident]) -> tuple[Event, ...]:
         s = float(np.interp(hand.start, drive["time"], drive["s"]))
         found.append(Event(CAR, f"driven by {hand.by}", hand.start, s, hand.end))
     return tuple(sorted(map(_rounded, found), key=lambda each: np.inf if each.time is None else each.time))
+
+
+def _told_hits(case: Judged, why: str) -> Iterator[Event]:
+    kinds = Counter[str]()
+    for number, role in enumerate(case.world.scene.actors if case.drive.others else ()):
+        kinds[role.kind] += how_many(role, number, case.drive.seed)
+        if role.hits not in STRUCK:
+            continue
+        who, what = f"{role.kind} {kinds[role.kind]}", f"{HITS}{role.hits}"
+        hit = next((each for each in case.contacts if each.other == who), None)
+        face = hit and hit.contact and hit.contact.face
+        if hit and face in (("left", "right") if role.hits == MIRROR else (role.hits,)):
+            yield Event(who, what, hit.at_time, hit.at_s)
+        else:
+            yield Event(who, what, why=f"it hit the {face}" if face else why)
 
 
 def _ended(event: Event) -> Event:

@@ -21,6 +21,7 @@ from roadgpt.network.landscape import horizon_around
 from roadgpt.traffic.actor import STEP, Size
 from roadgpt.traffic.rehearsal import rehearsed
 from roadgpt.traffic.traffic import NEVER
+from roadgpt.verdict.criteria import ROBOT
 from roadgpt.verdict.measures import measure
 from roadgpt.verdict.oracle import BoolArray
 from roadgpt.verdict.verdict import Outcome
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
 
 NEAR, SLACK, LASTS = 4.0, 0.1, 1.0  # s, share of the prescribed speed, s
 AVOIDED = "avoided before it began"
-ROBOT = "robot"
 
 
 def told(road: "Road", drive: "Drive", world: "World") -> tuple[Outcome, str]:

@@ -12,9 +12,12 @@ from roadgpt.drive.drive_monitor import STUCK_AMONG_OTHERS, STUCK_TIME
 from roadgpt.language.names import Face
 from roadgpt.language.table import VEHICLES
 from roadgpt.road.world import share_in_words
+from roadgpt.traffic.traffic import LATE, NEVER
 from roadgpt.verdict.criteria import (
     FREE,
+    HITS,
     NAMED,
+    ROBOT,
     STEERED,
     SUCCESS,
     Criterion,
@@ -47,6 +50,7 @@ FAULTS: dict[Fault | None, str] = {
 }  # fmt: skip
 FACES: dict[Face, str] = {"front": "front", "rear": "rear", "left": "left side", "right": "right side"}
 
+NOT_MET, AVOIDED = "they never touched", "the tested driver avoided that"
 LEAST = 0.005  # m; smaller distances beyond a marking are not stated
 
 GIVES_WAY: tuple[Cause, ...] = ("stop line", "red light", "failure to yield")
@@ -112,6 +116,7 @@ def judge(
     crashed = (each for each in drive.history if each.what.startswith("hits ") and each.time is not None)
     description += "".join(f"; {each.who} {each.what} at {each.time:.1f} s" for each in crashed)
     description += _on_face(world, hit) + _counted(untold, cause) + _who_drove(drive, excuse)
+    description += _led_out(drive, world)
     description += "".join(f"; {each}" for each in [*filter(None, [found and found.said]), *drive.limited])
     if failed is None and drive.missed:
         from roadgpt.verdict.happened import told
@@ -119,9 +124,15 @@ def judge(
         outcome, why = told(laid, drive, world)
         description = f"{description}; {why}" if outcome == "PASS" else f"{why}; {description}"
     elif drive.missed:
-        from roadgpt.traffic.traffic import LATE
-
         description += "".join(f"; {each}" for each in drive.missed if not each.endswith(LATE))
+    is_robots = drive.driver == ROBOT and outcome == "PASS"
+    events = _events(case, incidents, NOT_MET if failed or is_robots else AVOIDED)
+    unmet = [each for each in events or () if each.what.startswith(HITS) and each.time is None]
+    never = [f"{each.who} {each.what}: {each.why}" for each in unmet]
+    if never and is_robots:
+        outcome, description = "INVALID", f"did not happen: {' and '.join(never)}; {description}"
+    else:
+        description += "".join(f"; {NEVER} {each}" for each in never)
     s, x, y, time = (float(drive[name][step]) for name in ("s", "x", "y", "time"))
     if cause == "collision" and contact is not None:
         s, (x, y), time = contact.at_s, contact.at_xy, contact.at_time
@@ -139,7 +150,7 @@ def judge(
         at_time=time if failed else None,
         side=side,
         incidents=incidents if case.is_route or drive.others is not None else None,
-        events=_events(case, incidents),
+        events=events,
         least_gap=gap,
         least_ttc=ttc,
         own_share=drive.shares.get(drive.driver),
@@ -152,12 +163,12 @@ def judge(
     )
 
 
-def _events(case: Judged, incidents: Sequence[Incident]) -> tuple[Event, ...] | None:
+def _events(case: Judged, incidents: Sequence[Incident], why: str) -> tuple[Event, ...] | None:
     if case.drive.others is None and not (case.drive.handovers or case.drive.history):
         return None
     from roadgpt.verdict.events import events_of
 
-    return events_of(case, incidents) or None
+    return events_of(case, incidents, why) or None
 
 
 def _blame(
@@ -243,6 +254,16 @@ def _who_drove(drive: "Drive", excuse: str) -> str:
     told = " and ".join(f"{name} for {percent(part)}" for name, part in others if name != RUN_IN)
     took = [f"{own} drove {percent(share)} of the way and handed over to {told}"] if told else []
     return "".join(f"; {each}" for each in (*run_in, *took, *filter(None, [excuse])))
+
+
+def _led_out(drive: "Drive", world: "World") -> str:
+    """Returns in words how far the script steered the car out of its lane, where that does not count."""
+    time, led = drive["time"], np.zeros(len(drive), bool)
+    for each in drive.handovers:
+        led |= (time > each.start) & (time <= each.end) & (each.by == SCRIPT)
+    most = float(drive["outside"][led].max(initial=0.0))
+    out = most > world.limits.oob_tolerance
+    return f"; {SCRIPT} steered it out of its lane, with up to {percent(most)} of it outside" if out else ""
 
 
 def far_beyond(beyond: float) -> str:

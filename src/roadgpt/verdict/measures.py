@@ -3,7 +3,7 @@
 Places are stations along the middle of the driven lane, and offsets ``t`` to its left, of the middles of
 boxes; the stretch of a box along and across is that of the turned box. The other is *ahead* if its middle is.
 It is in the *same lane* if its box reaches into the driven lane, and so does the tested car's; or if both
-boxes cover the same offsets, wherever the tested car is.
+boxes cover the same offsets, wherever the tested car is. Of things, such as cones, the latter alone counts.
 
 - time to collision (Hayward 1972; as in UN Regulation No. 157): of somebody ahead in the same lane, the gap
   from bumper to bumper by the speed at which it closes, both speeds along the lane;
@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 
 from roadgpt.geometry import boxes
 from roadgpt.geometry.curve import Array
+from roadgpt.language.table import THINGS
 from roadgpt.network.lanes import HEADROOM
 from roadgpt.network.line import Boxes, Line, driven_line
 from roadgpt.traffic.actor import HEADING, STEP, X, Y, Z
@@ -102,7 +103,8 @@ def measure(road: "Road", drive: "Drive", world: "World") -> Measures:
     (stretch, side), (stretches, sides) = mine.reach, others.reach
     rate, its = mine.velocity[:, 0], others.velocity[:, 0]
     abreast = np.abs(others.t - mine.t) < sides + side
-    same = (lane.holds(others) & lane.holds(mine)) | abreast
+    is_thing = np.array([each.kind in THINGS for each in drive.others.actors], bool)[who]
+    same = (lane.holds(others) & lane.holds(mine) & ~is_thing) | abreast
     ahead = same & (others.along > mine.along)
     gap = np.maximum(others.along - stretches - mine.along - stretch, 0.0)
     closing = rate - its

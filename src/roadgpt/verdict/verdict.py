@@ -259,11 +259,11 @@ def graded(outcome: str, share: float | None) -> str:
 
 
 def percent(share: float) -> str:
-    """Returns a share (0 to 1) in per cent: only exactly 0 as "0 %" and 1 as "100 %", and less than 0.001 %
-    as that."""
+    """Returns a share (0 to 1) in per cent: only exactly 0 as "0 %" and 1 as "100 %", and less than 0.1 % as
+    that."""
     told = f"{100 * share:.0f}"
     if told == "0" and share > 0:
-        told = f"{max(100 * share, 0.001):.1g}"
+        told = f"{100 * share:.1g}" if share >= 0.001 else "<0.1"
     elif told == "100" and share < 1:
         told = f"{math.floor(1000 * share) / 10:.1f}"
     return f"{told} %"

@@ -23,13 +23,7 @@ from roadgpt.run.folder import is_run
 from roadgpt.run.model import permissions
 from roadgpt.run.versions import versions_now
 from roadgpt_search.faults.fault import Faults, faults_in
-from roadgpt_search.faults.fault_log import (
-    FAILURES,
-    FailureAnalysis,
-    analyse,
-    kept_analysis,
-    write_tables,
-)
+from roadgpt_search.faults.fault_log import FAILURES, FailureAnalysis, analyse, kept_analysis, write_tables
 from roadgpt_search.faults.remedy import FOLDER, stored_remedies, try_remedies
 
 COMPARED = 500  # largest number of failures, evenly spread, that are grouped (if untested): under a second

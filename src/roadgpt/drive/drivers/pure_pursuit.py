@@ -3,13 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from roadgpt.drive.driving_line import (
-    highest_speeds,
-    line_along,
-    pedals,
-    pursuit_curvature,
-    stations,
-)
+from roadgpt.drive.driving_line import highest_speeds, line_along, pedals, pursuit_curvature, stations
 from roadgpt.drive.keeping_distance import KeepingDistance
 from roadgpt.drive.view import Command, View
 from roadgpt.road import Road, World

@@ -12,15 +12,7 @@ from roadgpt.plural import plural
 from roadgpt.report.overview import Thumbnail
 from roadgpt.report.page.charts import AxisRange, heat, is_map
 from roadgpt.report.page.maps import gallery
-from roadgpt.report.page.model import (
-    Block,
-    Cards,
-    Figure,
-    FigureCard,
-    Section,
-    Table,
-    linked,
-)
+from roadgpt.report.page.model import Block, Cards, Figure, FigureCard, Section, Table, linked
 from roadgpt.report.road_record import RoadGroup, RoadRecord
 
 SHOWN = 3  # pictures of the first section

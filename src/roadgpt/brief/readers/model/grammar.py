@@ -49,11 +49,7 @@ from roadgpt.brief.readers.model.vocabulary import (
 )
 from roadgpt.brief.refusal import CLASHING, OF_CAUSES
 from roadgpt.brief.scene import LAND_KINDS, ON_ITS_WAY, ONE_OF, Land, Role, SlipperyPlace
-from roadgpt.language.names import (
-    MapJunctionKind,
-    What,
-    Where,
-)
+from roadgpt.language.names import MapJunctionKind, What, Where
 from roadgpt.language.table import (
     COUNTED,
     CUES,
@@ -729,7 +725,5 @@ def _of_doing(what: What, numbers: Numbers) -> Symbol:
     keys = [f"{NUMBERS[name].key}=" for name in names]
     usual = [_value(keys[0], numbers)] if MANEUVERS[what].numbers else []
     return any_of(
-        one_of("remove"),
-        *usual,
-        *(sequel(one_of(key), _value(key, numbers)) for key in dict.fromkeys(keys)),
+        one_of("remove"), *usual, *(sequel(one_of(key), _value(key, numbers)) for key in dict.fromkeys(keys))
     )

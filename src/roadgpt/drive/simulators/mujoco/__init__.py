@@ -116,6 +116,8 @@ class MujocoSimulator:
                 lights = company.lights(now[station], step * CONTROL)
             here = (step * CONTROL, *place, road, world, steer, CONTROL, vx, vy, image)
             task = script and script.task
+            if script is not None:
+                script.has_crashed = monitor.touched is not None
             view = View._make((*here, *ahead, seen, lights, outlook.signs(now[station]), task))
             steer, throttle, brake = guard.ask(view)
             if script is not None:
