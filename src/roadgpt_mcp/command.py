@@ -34,7 +34,7 @@ def mcp(out: Path | None, drivers: Path | None, http: int | None, **limits: Any)
     roadgpt mcp --http 8765"""
     from roadgpt.errors import needed
 
-    needed("mcp", "roadgpt mcp")
+    needed("mcp", "serving agents")
     from roadgpt_mcp import serving
     from roadgpt_mcp.server import ToolServer
     from roadgpt_mcp.work import Workshop

@@ -70,10 +70,10 @@ class ToolServer:
 
     async def _answer(self, ctx: Context, name: str, asked: Given) -> Answer:
         if name not in self._tools:
-            raise UsageError(f"there is no tool '{name[:40]}'; there are {', '.join(self._tools)}")
+            raise UsageError(f"there is no tool {name[:40]!r}; there are {', '.join(self._tools)}")
         takes, row = self._tools[name].input_schema, TABLE["tools"][name]
         if mistake := best_match(Draft202012Validator(takes).iter_errors(asked)):
-            said = ": ".join((*map(str, mistake.path), mistake.message[:300]))
+            said = ": ".join((*map(str, mistake.path), mistake.message[-300:]))
             raise UsageError(f"this cannot be: {said}; {mistake.schema.get('description', row['says'])}")
         given = {key: its["default"] for key, its in takes["properties"].items() if "default" in its}
         given |= asked
@@ -107,30 +107,32 @@ class ToolServer:
 
     async def _told(self, name: str, given: Given, rows: list[dict[str, Any]], notes: list[str]) -> Answer:
         """Returns the answer of a tool whose process printed rows, and its pictures."""
-        folder, pictures = given["folder"], self._shop.pictures
+        folder, files = given["folder"], self._shop.found
         for row in rows:
             if "file" in row:
                 row["test"] = re.sub(r"/(?:test\.|runs/)0*(\d+)(?:\.json)?$", r"/\1", row.pop("file"))
         match name:
             case "run" | "change":
                 notes = [*(rows[0].get("changes", ()) if rows else ()), *notes]
-                told = {"name": folder.name, "tests": rows, "notes": notes}
-                return told, pictures(folder / "runs" / "0001", *VIEW)
+                return {"name": folder.name, "tests": rows, "notes": notes}, files(
+                    folder / "runs" / "0001", *VIEW
+                )
             case "campaign" | "resume":
                 return {"name": folder.name, "state": rows[-1]}, []
             case "scenarios":
                 short = [{"name": row["name"], "says": row["says"]} for row in rows]
                 return {"rows": rows if "pattern" in given else short}, []
             case "faults":
-                with self._shop.inside(folder / "faults" / "faults.csv").open(encoding="utf-8") as table:
-                    return {"rows": [*csv.DictReader(table)]}, pictures(folder / "faults", "*.png")
+                tables = map(read_text, files(folder, "faults/faults.csv"))  # none without a failure
+                rows = [row for each in tables for row in csv.DictReader(each.splitlines())]
+                return {"rows": rows}, files(folder, "faults/*/*.png")
             case "show" if "outcomes" not in rows[0]:
-                found = pictures(folder.parent / "runs" / folder.name.zfill(4), *VIEW)
-                if len(rows) == 1 and not found:
+                seen = files(folder.parent / "runs" / folder.name.zfill(4), *VIEW)
+                if len(rows) == 1 and not seen:
                     drawn = self._made("pictures", given["run"])
                     await self._shop.done(["view", "--format", "png", "--out", f"{drawn}", *given["words"]])
-                    found = pictures(drawn, "*/birds_eye.png")
-                return {"tests": rows[: self._shop.tests]}, found or pictures(folder, "*.png")
+                    seen = files(drawn, "*/birds_eye.png")
+                return {"tests": rows[: self._shop.tests]}, seen or files(folder, "*.png")
         return rows[0] if name == "check" else {"state": rows[0]}, []
 
     async def _language(self, given: Given) -> Answer:

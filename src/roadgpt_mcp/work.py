@@ -49,7 +49,7 @@ class Workshop:
         """Returns the path of a folder of runs or campaign, or of one of its tests, as commands take it."""
         found = TEST.fullmatch(name)
         if found is None or not self.inside(self.home / found[1]).is_dir():
-            raise UsageError(f"there is no run '{name[:80]}'; the tool runs lists them; a test is run-1/1")
+            raise UsageError(f"there is no run {name[:80]!r}; the tool runs lists them; a test is run-1/1")
         return Path(f"{self.home / found[1]}{found[2]}")
 
     def new(self, kind: str) -> Path:
@@ -70,10 +70,10 @@ class Workshop:
             if path.is_file() and not path.is_symlink():
                 return f"{self.drivers.resolve()}/{said}"
         file = ", or a file of the folder --drivers: FILE.py:CLASS" * (self.drivers is not None)
-        raise UsageError(f"there is no driver '{said[:80]}'; there are {', '.join(known)}{file}")
+        raise UsageError(f"there is no driver {said[:80]!r}; there are {', '.join(known)}{file}")
 
-    def pictures(self, place: Path, *patterns: str) -> list[Path]:
-        """Returns the pictures in a folder, in the order of these patterns."""
+    def found(self, place: Path, *patterns: str) -> list[Path]:
+        """Returns the files in a folder, in the order of these patterns."""
         return [self.inside(path) for pattern in patterns for path in sorted(place.glob(pattern))]
 
     async def done(self, words: list[str], tell: Tell | None = None) -> tuple[list[str], list[str]]:
