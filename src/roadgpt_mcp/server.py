@@ -114,9 +114,8 @@ class ToolServer:
         match name:
             case "run" | "change":
                 notes = [*(rows[0].get("changes", ()) if rows else ()), *notes]
-                return {"name": folder.name, "tests": rows, "notes": notes}, files(
-                    folder / "runs" / "0001", *VIEW
-                )
+                seen = files(folder / "runs" / "0001", *VIEW)
+                return {"name": folder.name, "tests": rows, "notes": notes}, seen
             case "campaign" | "resume":
                 return {"name": folder.name, "state": rows[-1]}, []
             case "scenarios":
@@ -136,8 +135,7 @@ class ToolServer:
         return rows[0] if name == "check" else {"state": rows[0]}, []
 
     async def _language(self, given: Given) -> Answer:
-        every = topics()
-        return {"text": every.get(given["topic"]) or "\n".join(every.values())}, []
+        return {"text": topics().get(given["topic"]) or "\n".join(topics().values())}, []
 
     async def _runs(self, given: Given) -> Answer:
         there = (path for path in self._shop.home.iterdir() if path.is_dir() and path.name not in OURS)
