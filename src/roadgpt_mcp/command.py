@@ -17,7 +17,7 @@ MCP_OPTIONS: list[click.Parameter] = [
     options.Option("--disk", "Largest size of the folder, MB.", options.whole(1, 10_000_000, "MB"), 2_000),
     options.Option("-j --workers", "Tests driven at a time.", options.whole(1, 256, "workers"), 1),
     options.Option("--http", "Serve on this port of 127.0.0.1 (0: any) those that send the token, which is "
-                   "printed. [default: standard input and output]", click.IntRange(0, 65_535)),
+                   "printed. [default: standard streams]", click.IntRange(0, 65_535), metavar="PORT"),
 ]  # fmt: skip
 
 
