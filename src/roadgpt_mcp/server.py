@@ -161,7 +161,7 @@ def _said(given: Given, place: Path, row: Given) -> list[str]:
     """Returns what stands behind the options: a run, and the plan or the words, of which there may be one."""
     plan, words = (given.get(each, "").strip() * ("words" in row["takes"]) for each in ("plan", "words"))
     is_open = "words" in row["takes"] and "scenario" not in given and not plan + words
-    if is_open or (plan and words) or words.endswith(".toml"):
-        raise UsageError("give a plan or words (which do not end with .toml), and not both")
+    if is_open or (plan and words) or (plan or words).endswith(".toml"):
+        raise UsageError("give a plan or words, one of them; neither ends with .toml")
     said = (f"{place}" if "run" in given else "", plan or words or given.get("pattern", ""))
     return [*(["--plan"] if plan else []), "--", *filter(None, said)]

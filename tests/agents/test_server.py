@@ -169,6 +169,8 @@ def test_what_a_hostile_agent_asks_for_is_refused_in_one_sentence(tmp_path: Path
         ("run", {"plan": PLAN, "tests": 10**9}), ("run", {"plan": PLAN, "tests": 0}),
         ("run", {"plan": PLAN, "tests": "many"}), ("run", {"plan": 3}), ("run", {"plan": "turn " * 100_000}),
         ("run", {"plan": PLAN, "words": "a road"}), ("run", {}), ("run", {"words": "plan.toml"}),
+        ("campaign", {"plan": "../x.toml", "tests": 1}), ("check", {"plan": "turn\0"}),
+        ("run", {"scenario": "\ud800"}),
         ("run", {"plan": PLAN, "out": "/tmp"}), ("run", {"plan": PLAN, "seed": -1}), ("check", {}),
         ("campaign", {"plan": PLAN}), ("export", {"run": "run-1", "formats": ["../x"]}),
         ("export", {"run": "run-1", "formats": []}), ("language", {"topic": "/etc/passwd"}),
