@@ -25,6 +25,7 @@ ANNEXES = (
     "roadgpt_film",
     "roadgpt_formats",
     "roadgpt_gym",
+    "roadgpt_mcp",
     "roadgpt_sbft",
     "roadgpt_search",
     "roadgpt_study",
@@ -33,6 +34,7 @@ FEW = {
     "roadgpt_edit": 107,
     "roadgpt_film": 25,
     "roadgpt_formats": 150,
+    "roadgpt_mcp": 33,
     "roadgpt_sbft": 58,
 }  # names of roadgpt that each may import
 HALLWAY = {
