@@ -523,10 +523,11 @@ def _measured(network: Network, passage: "Passage", directions: Sequence[float])
     ramp = ramp_of(network, passage.entered)
     around = 1 if not network.left_hand else -1
     gaps = [around * (b - a) % 360 for a, b in pairwise([*directions, directions[0]])]
+    own: JunctionKind = passage.entered.kind if gaps[1:] else "turning_circle"
     ways = tuple((each - directions[0]) % 360 - 180 for each in directions[1:])
     return MeasuredJunction(
         passage.start,
-        kinds_of(gaps) if ring is None and ramp is None else (passage.entered.kind,),
+        kinds_of(gaps) if ring is None and ramp is None else (own,),
         tuple(gaps),
         180.0 if passage.exit == len(passage.arms) else ways[passage.exit - 1],
         passage.exit,
@@ -641,7 +642,8 @@ def _node(network: Network, junctions: tuple[Junction, ...]) -> MeasuredNode:
     directions = directions_of(network, [arm.end for arm in arms])
     around = -1 if is_ring and network.left_hand else 1
     gaps = [around * (b - a) % 360 for a, b in pairwise([*directions, directions[0]])]
-    kinds: tuple[JunctionKind, ...] = ("roundabout",) if is_ring else kinds_of(gaps)
+    own: JunctionKind = "roundabout" if gaps[1:] else "turning_circle"
+    kinds = (own,) if is_ring else kinds_of(gaps)
     x, y, _ = junctions[0].node
     return MeasuredNode((x, y), kinds, frozenset(arm.control for arm in arms))
 

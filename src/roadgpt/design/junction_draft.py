@@ -23,6 +23,7 @@ from roadgpt.brief.junctions import (
     ARMS,
     LANE_KINDS,
     RAMPS,
+    RINGS,
     SIDE,
     SIZES,
     JunctionClause,
@@ -41,6 +42,7 @@ from roadgpt.brief.model import (
 from roadgpt.brief.ranges import Range, nearest, overlap
 from roadgpt.brief.words import MOST_LANES, ROAD
 from roadgpt.language.names import JunctionKind, PlainKind
+from roadgpt.language.table import ROADS
 from roadgpt.network.building import BETWEEN, MOUTH, TURN_TAPER, USUALLY_FED, ring_width, smallest_radius
 from roadgpt.network.building import MOST_LANES as MOST_RING_LANES
 from roadgpt.network.growing import BEFORE_TURN_LANES, controls_of
@@ -506,7 +508,7 @@ def drawn_junction(
             for n, angle in enumerate(angles)
         )
         radius = ceil(10 * _radius(clause, angles, rng, haste)) / 10
-        if kind == "roundabout" and radius < smallest_radius(np.radians([-180.0, *angles]).tolist()):
+        if kind in RINGS and radius < smallest_radius(np.radians([-180.0, *angles]).tolist()):
             continue
         kerb = float(rng.uniform(*KERBS))
         drawn = JunctionDesign(
@@ -695,7 +697,7 @@ def _towards(clause: JunctionClause, angles: Sequence[float]) -> int | None:
 
 
 def _radius(clause: JunctionClause, angles: Sequence[float], rng: Rng, haste: float) -> float:
-    if clause.kind != "roundabout":
+    if clause.kind not in RINGS:
         return ISLANDS[0]
     allowed = span(clause.radius)
     if clause.outer is not None:
@@ -704,7 +706,8 @@ def _radius(clause: JunctionClause, angles: Sequence[float], rng: Rng, haste: fl
         outer = SIZES[clause.size].drawn_in(0.5, 0.1)
         allowed = overlap(allowed, _island(outer, _ring_lanes(clause))) or allowed
     elif clause.radius is None:
-        allowed = Range(*ISLANDS)
+        across = ROADS["junctions"][clause.kind].get("across")
+        allowed = _island(Range(*across), 1) if across else Range(*ISLANDS)
     gaps = [b - a for a, b in pairwise([-180.0, *angles, 180.0])]
     usual = (2 * MOUTH + BETWEEN) / (min(gaps) * pi / 180)
     low, high = max(allowed.lo, 3.0), min(allowed.hi, max(allowed.lo, 3.0) * 1.5 + 5)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import cast
 
-from roadgpt.brief.junctions import side_of
+from roadgpt.brief.junctions import RINGS, side_of
 from roadgpt.errors import UsageError
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.geometry.curve import wrapped
@@ -232,7 +232,7 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
         UsageError: The arm that the route takes has ``one_way``, or no arm fits ``take``."""
     width, shoulder = float(after.width(0.0)), after.shoulder_width
     ring, arms, taken = (junction.ring_lanes, junction.ring_lanes), junction.all_arms, junction.taken
-    counts = (ring, ring) if junction.kind == "roundabout" else ((1, 1), before.count)
+    counts = (ring, ring) if junction.kind in RINGS else ((1, 1), before.count)
     side, ahead = (Profile.of(*count, width, shoulder) for count in counts)
     found = [
         after if n == taken else ahead if side_of(arm.angle) == "straight" else side
@@ -263,7 +263,7 @@ def _continuing(junction: JunctionDesign) -> int | None:
     """Returns the index of the arm opposite the arm that the route takes; None at a roundabout, or if only
     the road of arrival or no road lies there."""
     taken = junction.taken
-    if taken is None or junction.kind == "roundabout":
+    if taken is None or junction.kind in RINGS:
         return None
     angles = [arm.angle for arm in junction.all_arms]
     behind = math.radians(angles[taken] + 180)
@@ -291,7 +291,7 @@ def contact_distances(
     road of arrival; ``profiles`` are the cross-sections of the arms. The road of arrival and one-way roads
     into the junction end here, so the widths at their ends count. All other roads begin here, so the widths
     at their starts count. Raises UsageError if the island of a roundabout is too small for its arms."""
-    if junction.kind != "roundabout":
+    if junction.kind not in RINGS:
         ends_here = {0, *(n for n, arm in enumerate(junction.all_arms, 1) if arm.one_way == "in")}
         mouths = []
         profiles = [with_turn_lanes(profiles[0], junction), *profiles[1:]]
@@ -317,7 +317,7 @@ def length_inside(place: PlaceDesign, before: Profile, after: Profile) -> float:
     taken = place.taken
     directions = [math.pi, *(math.radians(arm.angle) for arm in place.all_arms)]
     distances = contact_distances(place, directions, [before, *profiles_of_arms(place, before, after)])
-    if place.kind == "roundabout":
+    if place.kind in RINGS:
         angle = 2 * math.pi if taken is None else directions[taken + 1] + math.pi
         return around_length(place.radius, directions, angle, place.ring_lanes)
     assert taken is not None
@@ -340,6 +340,8 @@ def controls_of(junction: JunctionDesign) -> tuple[Control, ...]:
 
     The ``control`` of an arm replaces the sign or light of this arm."""
     arms, control, taken = junction.all_arms, junction.control, junction.taken
+    if not arms:
+        return ("none",)
     nearest = min(range(len(arms)), key=lambda n: abs(arms[n].angle))
     opposite = nearest if abs(math.radians(arms[nearest].angle)) <= LEAST else None
     if junction.kind == "roundabout" and control != "lights":
@@ -371,6 +373,8 @@ def signs_at(node: MapNode, directions: Sequence[float]) -> tuple[Control, ...]:
     a sign with "none". Otherwise the two arms that are most nearly opposite are the main road and have
     priority; the other arms have stop signs with "stop", and give way with "yield" or "priority"."""
     count = len(directions)
+    if count == 1:
+        return ("none",)
     if node.kind == "roundabout":
         return (node.control if node.control in ("lights", "stop") else "yield",) * count
     pairs = [(i, j) for i in range(count) for j in range(i)]

@@ -50,7 +50,7 @@ from typing import Annotated, Any, Literal, NamedTuple, Self, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, StrictBool, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
-from roadgpt.brief.junctions import LANE_KINDS, RAMPS, side_of
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, RINGS, side_of
 from roadgpt.brief.words import MOST_LANES
 from roadgpt.errors import UsageError
 from roadgpt.language.names import Control, LaneKind, PlainKind, Side
@@ -100,6 +100,7 @@ USUAL_ARMS: dict[PlainKind, tuple[float, ...]] = {
     "crossroads": (-90.0, 0.0, 90.0),
     "star": (-108.0, -36.0, 36.0, 108.0),
     "roundabout": (-90.0, 0.0, 90.0),
+    "turning_circle": (),
 }
 """The angles in degrees of the arms of a junction whose design gives no arms."""
 COUNTS: dict[PlainKind, tuple[int, int]] = {
@@ -108,6 +109,7 @@ COUNTS: dict[PlainKind, tuple[int, int]] = {
     "crossroads": (3, 3),
     "star": (4, MOST_ARMS),
     "roundabout": (2, 5),
+    "turning_circle": (0, 0),
 }
 """The smallest and the largest number of arms, without the road of arrival."""
 Take = Literal["left", "right", "straight"] | Annotated[int, Field(ge=1)]
@@ -370,7 +372,7 @@ class JunctionDesign(FrozenFields):
         route turns back at a roundabout. Raises UsageError if no arm, or more than one, fits ``take``."""
         arms = self.all_arms
         if isinstance(self.take, int):
-            most = len(arms) + (self.kind == "roundabout")
+            most = len(arms) + (self.kind in RINGS)
             if self.take > most:
                 raise UsageError(f"take {self.take} is more than the number of exits; give 1 to {most}")
             return self.take - 1 if self.take <= len(arms) else None
@@ -989,7 +991,8 @@ def _check_route(design: Design) -> None:
         if design.nodes[number - 1].kind == "bend":
             raise UsageError(f"the route begins or ends at node {number}, a bend; take a junction or an end")
     for before, here, after in zip(route, route[1:], route[2:], strict=False):
-        if before == after and design.nodes[here - 1].kind != "roundabout":
+        if before == after and design.nodes[here - 1].kind not in RINGS:
             raise UsageError(
-                f"the route turns back at node {here}, and one can only at a roundabout; leave out the rest"
+                f"the route turns back at node {here}, and one can only at a roundabout or a turning "
+                "circle; leave out the rest"
             )
