@@ -83,6 +83,8 @@ class JunctionClause(Frozen):
     others_stop: bool = False
     """Whether the roads that give way to the route have stop signs."""
     crosswalk: bool = False
+    island: bool = False
+    """Whether a crosswalk away from junctions has an island in the middle of the road."""
     turn_lanes: tuple[Way, ...] = ()
     """The sides, left or right, for which the road of arrival has an additional lane that only turns there.
     """

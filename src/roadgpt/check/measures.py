@@ -456,7 +456,7 @@ def measured_places(route: "Route") -> list[MeasuredJunction | MeasuredLanes]:
 def _lane_places(route: "Route") -> Iterator[MeasuredLanes]:
     network = route.network
     for (_, one), (start, two) in pairwise(route.roads):
-        if RoadEnd(one.id, "end") not in network.continued_at or is_beside_ramp(network, one, two):
+        if RoadEnd(one.id, "end") not in network.continued_at or is_beside_place(network, one, two):
             continue
         before, after = one.profile.count[0], two.profile.count[0]
         lanes = [leg.lane for leg in route.legs if leg.road == two.id]
@@ -488,10 +488,15 @@ def _narrow_part(member: NetworkRoad, at_end: bool) -> float:
     return float(found)
 
 
-def is_beside_ramp(network: Network, one: NetworkRoad, two: NetworkRoad) -> bool:
-    """Returns whether a change of lanes between two roads belongs to a ramp: the first road begins at a merge
-    and has the lane for acceleration, or the second ends at an exit and has the lane for deceleration."""
+def is_beside_place(network: Network, one: NetworkRoad, two: NetworkRoad) -> bool:
+    """Returns whether a change of lanes between two roads belongs to a ramp or to the island of a crosswalk:
+    the first road begins at a merge and has the lane for acceleration, or the second ends at an exit and has
+    the lane for deceleration; or one of them has the island."""
     ends = (RoadEnd(one.id, "start"), "merge"), (RoadEnd(two.id, "end"), "diverge")
+    crossed = {end for each in network.continuations if each.crosswalk for end in (each.before, each.after)}
+    is_island = one.profile.is_divided != two.profile.is_divided
+    if is_island and not crossed.isdisjoint((RoadEnd(one.id, "start"), RoadEnd(two.id, "end"))):
+        return True
     return any(
         (number := network.junction_at.get(end)) is not None and network.junction(number).kind == kind
         for end, kind in ends

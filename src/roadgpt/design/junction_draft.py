@@ -169,7 +169,7 @@ def drawn_change(asked: JunctionClause, around: Sequence[Brief]) -> LanesChangeD
     room = MOST_IN_TAPER * min(span(road.length).hi for road in around)
     length = max(min(TAPER, room), LEAST_TAPER) if asked.length is None else _length(asked.length)
     return LanesChangeDesign.model_validate(
-        {"after": 1, "kind": asked.kind, "side": side, "length": round(length, 1)}
+        {"after": 1, "kind": asked.kind, "side": side, "length": round(length, 1), "island": asked.island}
     )
 
 

@@ -718,6 +718,23 @@ def with_turn_lanes(profile: Profile, junction: JunctionDesign) -> Profile:
     return replace(found, centre_marking="solid") if found.centre_marking == "broken" else found
 
 
+ISLAND_WIDTH = 2.0  # m, at a crosswalk: for persons to wait, at least (RASt 06, section 6.1.8)
+ISLAND_LENGTH = 8.0  # m before and behind the end of the road at which the crosswalk is
+ISLAND_TAPER = 29.0  # m, in which the lanes move aside by half of that: V sqrt(i / 3) at 50 km/h (RAS-K-1)
+
+
+def with_island(profile: Profile, at_end: bool) -> Profile:
+    """Returns the cross-section of the part of a road before or behind a crosswalk with an island: a median
+    from which both directions move away."""
+    wide, long = ISLAND_WIDTH, ISLAND_LENGTH
+    to, off = [(0.0, 0.0), (ISLAND_TAPER, wide)], [(0.0, wide), (long, wide), (long + ISLAND_TAPER, 0.0)]
+    width = CubicProfile.smooth(to if at_end else off)
+    found = _constant(profile, FAR if at_end else 0.0)
+    offset = added([(1, found.offset), (-0.5, width)], FAR)
+    left = (LaneStrip("median", width, "solid"), *found.left)
+    return replace(found, left=left, offset=offset, centre_marking="solid")
+
+
 def _constant(profile: Profile, s: float) -> Profile:
     left, right = (
         tuple(replace(lane, width=width_at(lane.width, s)) for lane in side)

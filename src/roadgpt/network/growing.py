@@ -18,6 +18,8 @@ from roadgpt.geometry.pieces import joined
 from roadgpt.language.names import Control, PlainKind
 from roadgpt.network.building import (
     FAR,
+    ISLAND_LENGTH,
+    ISLAND_TAPER,
     USUALLY_FED,
     Builder,
     RampBuilder,
@@ -29,6 +31,7 @@ from roadgpt.network.building import (
     length_of_turn_lanes,
     setbacks,
     smallest_radius,
+    with_island,
     with_turn_lanes,
 )
 from roadgpt.network.lane_along import legs_along
@@ -132,7 +135,11 @@ class _RouteGrowth:
             self._pass_junction(number, place, is_level)
         elif isinstance(place, LanesChangeDesign):  # another road continues that of arrival, with other lanes
             road = self._road(number, self._end(), (True, is_level))
-            self._continue(self.passed[-1], road, continued_lanes(place, *around), place.kind == "crosswalk")
+            if place.island:
+                self._pass_island(road)
+            else:
+                lanes = continued_lanes(place, *around)
+                self._continue(self.passed[-1], road, lanes, place.kind == "crosswalk")
             if place.kind == "lane_change":
                 self.shifts[road] = 1 if place.side == "left" else -1
         else:
@@ -147,6 +154,31 @@ class _RouteGrowth:
         self.builder.continuations.append(Continuation(*ends, lanes, crosswalk))
         self.passed.append(road)
 
+    def _split(self, number: int, s: float, before: Profile, behind: Profile) -> int:
+        """Makes a road end at a station, and returns the id of a new one that leads on from there."""
+        first, last = parts_of(self.builder.roads[number].road, s)
+        self.builder.roads[number] = NetworkRoad(number, first.with_profile(before))
+        return self.builder.add(last.with_profile(behind))
+
+    def _pass_island(self, road: int) -> None:
+        """Goes on to a road across a crosswalk with an island. The parts beside it are roads of their own."""
+        (before, one), (_, two) = ((n, self.builder.roads[n].road) for n in (self.passed[-1], road))
+        own, long = self.builder.roads[before].profile, ISLAND_TAPER + ISLAND_LENGTH
+        if own.is_divided or not own.against_ids:
+            raise UsageError("an island divides the two directions of a road without a median; leave it out")
+        if (least := long + BEFORE_TURN_LANES) > (shorter := min(one.length, two.length)):
+            raise UsageError(
+                f"an island needs {least:.0f} m of the roads before and behind it, and one is "
+                f"{shorter:.0f} m long; make it longer"
+            )
+        behind = self.builder.roads[road].profile
+        wide = self._split(before, one.length - long, own, with_island(own, at_end=True))
+        rest = self._split(road, long, with_island(behind, at_end=False), behind)
+        lanes = tuple((n, n + (n > 0)) for n in (*own.along_ids, *own.against_ids))
+        self._continue(before, wide, lanes)
+        self._continue(wide, road, tuple((n, n) for _, n in lanes), crosswalk=True)
+        self._continue(road, rest, tuple((n, number) for number, n in lanes))
+
     def _add_turn_lanes(self, junction: JunctionDesign) -> None:
         """Makes the last part of the road of arrival a road of its own, with turn lanes."""
         arrival, profile = self.passed[-1], self.builder.roads[self.passed[-1]].profile
@@ -158,9 +190,7 @@ class _RouteGrowth:
                 f"its turn lanes need {BEFORE_TURN_LANES + length:.0f} m of the road before it, which is "
                 f"{whole.length:.0f} m long or changes its lanes there; make that road longer"
             )
-        first, last = parts_of(whole, start)
-        self.builder.roads[arrival] = NetworkRoad(arrival, first.with_profile(profile))
-        wide = self.builder.add(last.with_profile(with_turn_lanes(profile, junction)))
+        wide = self._split(arrival, start, profile, with_turn_lanes(profile, junction))
         inside = int("left" in junction.turn_lanes)
         lanes = (*((n, n - inside) for n in profile.along_ids), *((n, n) for n in profile.against_ids))
         self._continue(arrival, wide, lanes)

@@ -80,7 +80,8 @@ MEDIAN = 2.0  # m, width of a median
 TAPER = 60.0  # m, length of the taper of a lane that ends or begins
 LEAST_WIDTH = 1.5  # m; where a lane is narrower than this, no car can drive in it
 
-USUAL = {"ring_lanes": 1, "crosswalk": False, "taper": RAMP_TAPER, "turn_lanes": (), "turn_length": 25.0}
+USUAL = {"ring_lanes": 1, "taper": RAMP_TAPER, "turn_lanes": (), "turn_length": 25.0}
+USUAL |= {"crosswalk": False, "island": False}
 """Fields of a junction or a ramp that are written only if they differ from these values."""
 RARE = {"divided": False, "edge": "solid"}
 """Fields of a LanesDesign that are written only if they differ from these values."""
@@ -282,6 +283,8 @@ class LanesChangeDesign(FrozenFields):
     """Whether the leftmost or the rightmost lane ends or begins, or the side to which the route changes."""
     length: LaneLength = TAPER
     """Length in metres of the taper in which the lane ends or begins; not used for a lane change."""
+    island: StrictBool = False
+    """Whether a crosswalk has an island between the directions."""
     lanes: LanesDesign | None = None
     """The lanes of the road behind this place; None for the lanes of the road before it, less the lane that
     ends or plus the lane that begins."""
@@ -699,7 +702,8 @@ def _check_object(what: str, raw: Any, fields: str) -> None:
     """Raises UsageError if parsed JSON is not an object, or has true or false in place of a number."""
     if not isinstance(raw, Mapping):
         raise UsageError(f"{what} cannot be read: give an object with {fields}")
-    _no_truths(what, {name: value for name, value in raw.items() if name not in ("divided", "crosswalk")})
+    truths = ("divided", "crosswalk", "island")
+    _no_truths(what, {name: value for name, value in raw.items() if name not in truths})
 
 
 def _check_order(junctions: Sequence[PlaceDesign], segments: int) -> None:
