@@ -45,6 +45,8 @@ ANGLES, TURNS = (
 )
 """Ranges in degrees of the smallest angle between two arms of a junction, and of that by which a route can
 turn left or right there."""
+FORMED = {**ROADS["forms"], **ROADS["forms_of_plans"]}
+"""What can be asked of each form."""
 TURN_LENGTHS = Range(15, 300)
 """The lengths in metres in which a turn lane can have more than 0.9 of its width: at least two waiting cars
 (AASHTO, A Policy on Geometric Design of Highways and Streets, 2018, section 9.7)."""
@@ -118,7 +120,7 @@ def _faults_of_turn_lanes(junction: JunctionClause) -> Iterator[str]:
 
 
 def _has_only_its_fields(junction: JunctionClause) -> bool:
-    usual, its = JunctionClause(kind=junction.kind), ROADS["forms"].get(FORMS[junction.kind], ())
+    usual, its = JunctionClause(kind=junction.kind), FORMED[FORMS[junction.kind]]
     others = (name for name in PARTS["junction"] if name not in ("take", *its))
     is_way = junction.take in (None, "back") or junction.take in TAKES[junction.kind]
     return is_way and all(getattr(junction, name) == getattr(usual, name) for name in others)
