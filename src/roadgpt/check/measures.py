@@ -436,7 +436,7 @@ def measured_junctions(route: "Route") -> list[MeasuredJunction]:
 
 @dataclass(frozen=True)
 class MeasuredLanes:
-    """A place where the number of lanes changes, where the route changes its lane, or a crosswalk."""
+    """A place where the number of lanes changes, where the route changes it, a crosswalk or a bus bay."""
 
     s: float  # station in metres
     kind: LaneKind
@@ -471,6 +471,8 @@ def _lane_places(route: "Route") -> Iterator[MeasuredLanes]:
                 yield MeasuredLanes(start, "lane_gain", side, _narrow_part(two, at_end=False))
         elif network.continued_at[RoadEnd(one.id, "end")].crosswalk:
             yield MeasuredLanes(start, "crosswalk", None)
+        elif "parking" in (strip.kind for strip in two.profile.along):
+            yield MeasuredLanes(start, "bus_bay", None)
         elif len(lanes) > 1:
             is_left = (lanes[1] > lanes[0]) == two.profile.leads_along(lanes[0])
             middle = two.road.length / len(lanes[1:]) / 2

@@ -63,6 +63,7 @@ from roadgpt.road.design import (
 LANES = ("lanes", "against", "divided", "centre", "motorway", "length")
 """Requirements that leave the shape of a road open."""
 GRADES = ("slope", "incline")
+KEEPS_LANES = ("lane_change", "crosswalk", "bus_bay")
 ON_MOTORWAY = 2  # lanes of a carriageway of a motorway, if no number is required
 LEAST_TAPER = 10.0  # m
 MOST_IN_TAPER = 0.6  # greatest share of the required length of a road that a taper takes
@@ -341,7 +342,7 @@ def _of_same_road(known: Brief, road: Brief, place: JunctionClause) -> Brief:
     number of lanes along the road is left open as well if ``place``, which is between the parts, changes it.
     """
     says_against = road.against is not None or road.divided
-    keeps_lanes = place.kind in (*RAMPS, "lane_change", "crosswalk") and road.lanes is None
+    keeps_lanes = place.kind in (*RAMPS, *KEEPS_LANES) and road.lanes is None
     return road.model_copy(
         update={
             "lanes": known.lanes if keeps_lanes else road.lanes,
@@ -441,7 +442,7 @@ def _behind(
         return max(before - 1, 1)
     if place.kind == "lane_gain":
         return min(before + 1, MOST_LANES)
-    if place.kind in ("lane_change", "crosswalk") or (place.kind in RAMPS and place.take == "main"):
+    if place.kind in KEEPS_LANES or (place.kind in RAMPS and place.take == "main"):
         return before
     if place.kind == "merge":
         return _where_ramps_are(places[n:])
