@@ -77,7 +77,7 @@ def test_any_text_is_a_brief_or_a_sentence(line: str) -> None:
 
 def test_a_misspelt_junction_is_answered_with_the_kinds_of_junctions() -> None:
     with pytest.raises(
-        BriefError, match=r"no clause 'crosroads'; .*hairpin.* a junction with one of crossroads"
+        BriefError, match=r"no clause 'crosroads'; .*hairpin.* a junction with one of .*crossroads"
     ):
         read_plan("crosroads left")
 

@@ -87,7 +87,7 @@ def test_each_side_of_a_crossroads_may_be_one_way(
 @given(st.data())
 @settled
 def test_nothing_ends_in_an_internal_error(data: st.DataObject) -> None:
-    kind = data.draw(st.sampled_from([*USUAL_ARMS]))
+    kind = data.draw(st.sampled_from([kind for kind, arms in USUAL_ARMS.items() if arms]))
     angles = USUAL_ARMS[kind]
     most = len(angles) + (kind == "roundabout")
     take = data.draw(st.integers(1, most))

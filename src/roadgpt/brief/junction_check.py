@@ -11,6 +11,7 @@ from roadgpt.brief.junctions import (
     BENDS,
     FORMS,
     RAMPS,
+    RINGS,
     SIZES,
     SKEW,
     TAKES,
@@ -44,6 +45,8 @@ ANGLES, TURNS = (
 )
 """Ranges in degrees of the smallest angle between two arms of a junction, and of that by which a route can
 turn left or right there."""
+FORMED = {**ROADS["forms"], **ROADS["forms_of_plans"]}
+"""What can be asked of each form."""
 TURN_LENGTHS = Range(15, 300)
 """The lengths in metres in which a turn lane can have more than 0.9 of its width: at least two waiting cars
 (AASHTO, A Policy on Geometric Design of Highways and Streets, 2018, section 9.7)."""
@@ -57,7 +60,8 @@ def faults_of_network(brief: Brief) -> Iterator[str]:
         yield from faults_of_junction(junction)
     backs = [n for n, junction in enumerate(brief.junctions) if junction.take == "back"]
     if backs and (backs[0] < len(brief.junctions) - 1 or not brief.stretches[-1].is_open):
-        yield "a route that turns back at a roundabout ends on the road on which it came; leave out the rest"
+        name = brief.junctions[backs[0]].name
+        yield f"a route that turns back at a {name} ends on the road on which it came; leave out the rest"
     yield from _faults_of_lanes(brief)
     if brief.map is not None and not brief.junctions:
         yield from _faults_of_map(brief.map)
@@ -75,8 +79,8 @@ def faults_of_junction(junction: JunctionClause) -> Iterator[str]:
     arms = overlap(possible, span(junction.arms)) or possible
     if arms.lo > arms.hi:
         yield f"a {name} has {possible} arms, not {junction.arms}; change one of them"
-    if take == "back" and junction.kind != "roundabout":
-        yield f"one cannot turn back at a {name}, only at a roundabout; leave it out"
+    if take == "back" and junction.kind not in RINGS:
+        yield f"one cannot turn back at a {name}, only at a roundabout or a turning circle; leave it out"
     ways, is_any = TAKES[junction.kind], "back" in TAKES[junction.kind]
     if ways and not is_any and take is not None and take not in (*ways, "back"):
         yield f"at a {name} one can go {' or '.join(ways)}, not {take}; change one of them"
@@ -116,7 +120,7 @@ def _faults_of_turn_lanes(junction: JunctionClause) -> Iterator[str]:
 
 
 def _has_only_its_fields(junction: JunctionClause) -> bool:
-    usual, its = JunctionClause(kind=junction.kind), ROADS["forms"].get(FORMS[junction.kind], ())
+    usual, its = JunctionClause(kind=junction.kind), FORMED[FORMS[junction.kind]]
     others = (name for name in PARTS["junction"] if name not in ("take", *its))
     is_way = junction.take in (None, "back") or junction.take in TAKES[junction.kind]
     return is_way and all(getattr(junction, name) == getattr(usual, name) for name in others)
@@ -126,7 +130,7 @@ def _is_as_wide(junction: JunctionClause, size: Range) -> bool:
     """Returns whether the diameters of a roundabout go with the word for its size."""
     island = Range((size.lo - CIRCULATORY) / 2, (size.hi - CIRCULATORY) / 2)
     is_wide = meets(junction.outer, Range(size.lo - 1, size.hi + 1))  # so that none lies between two sizes
-    return is_wide and (junction.kind != "roundabout" or meets(junction.radius, island))
+    return is_wide and (junction.kind not in RINGS or meets(junction.radius, island))
 
 
 def _are_ways_possible(junction: JunctionClause) -> bool:

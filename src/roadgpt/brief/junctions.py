@@ -6,7 +6,7 @@ driving order."""
 from collections.abc import Mapping
 from typing import Self, get_args
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from roadgpt.brief.amount import Amount, Frozen, about, exactly, span
 from roadgpt.brief.ranges import Range
@@ -30,6 +30,8 @@ NAMES: Mapping[JunctionKind, tuple[str, ...]] = {
     kind: tuple(row["names"]) for kind, row in ROADS["junctions"].items()
 }
 """The English words for each kind; RoadGPT's own texts use the first one."""
+RINGS: tuple[JunctionKind, ...] = ("roundabout", "turning_circle")
+"""The kinds that have a ring around an island, on which one can turn back."""
 MAP = "map"
 ROUTE = "route"
 LONGEST_ROUTE = 12  # junctions
@@ -42,7 +44,7 @@ class JunctionClause(Frozen):
     """A junction that the route passes; a field that is None sets no requirement."""
 
     kind: JunctionKind
-    take: Take | None = None
+    take: Take | None = Field(None, validate_default=True)
     """Where the route goes on; at a fork, "left" and "right" are the leftmost and the rightmost way."""
     exit: Amount | None = None
     """The number of the exit at a roundabout, counted in driving direction; the last exit leads back."""
@@ -81,11 +83,18 @@ class JunctionClause(Frozen):
     others_stop: bool = False
     """Whether the roads that give way to the route have stop signs."""
     crosswalk: bool = False
+    island: bool = False
+    """Whether a crosswalk away from junctions has an island in the middle of the road."""
     turn_lanes: tuple[Way, ...] = ()
     """The sides, left or right, for which the road of arrival has an additional lane that only turns there.
     """
     turn_length: Amount | None = None
     """The length in metres in which a turn lane has more than 0.9 of its full width."""
+
+    @field_validator("take", mode="before")
+    @classmethod
+    def _turns_back(cls, take: Take | None, info: ValidationInfo) -> Take | None:
+        return take or ("back" if info.data.get("kind") == "turning_circle" else None)
 
     @field_validator("ways", "only_in", "only_out", "turn_lanes")
     @classmethod
@@ -165,7 +174,7 @@ TAKES: Mapping[JunctionKind, tuple[Take, ...]] = {
     kind: tuple(row.get("takes", [take for take in get_args(Take) if take not in ("ramp", "main")]))
     for kind, row in ROADS["junctions"].items()
 }
-"""Where a route can go on at each kind; "back" is possible only at a roundabout."""
+"""Where a route can go on at each kind; "back" is possible only at a roundabout or a turning circle."""
 ARMS: Mapping[JunctionKind, Range] = {kind: Range(*row["arms"]) for kind, row in ROADS["junctions"].items()}
 """The number of arms of each kind, including the road on which the route arrives."""
 SIZES: Mapping[IslandSize, Range] = {size: Range(*ends) for size, ends in ROADS["islands"].items()}

@@ -193,7 +193,7 @@ TESTED_CAR = "ego"
 OF_ACTORS = _of_scene(Role, NUMBERS, where=tuple(PLACES), side=(*SIDES, "opposite")) | {"hits": Part("hits")}
 AN_ACTOR = language(OF_ACTORS, "road user", hits=lambda text: text.replace("-", " "))
 AN_ACTION = language(_of_scene(Action, NUMBERS, side=SIDES), "manoeuvre")
-OF_ITSELF = _of_scene(Scene, NUMBERS, turn=WAYS, person=get_args(Person)) | {
+OF_ITSELF = _of_scene(Scene, {*NUMBERS} - {"angle"}, turn=WAYS, person=get_args(Person)) | {
     "lane": Part("lane"), "parks": Part("parked", {side: side for side in SIDES}),
 }  # fmt: skip
 ITSELF = language(OF_ITSELF, "tested car", lane=_lane_number)
@@ -204,6 +204,7 @@ SLIPPERY = "slippery"
 A_PATCH = language(_of_scene(SlipperyPlace, SlipperyPlace.model_fields), "slippery place")
 WORKS = "roadworks"
 A_SITE = language(_of_scene(Roadworks, Roadworks.model_fields, kind=tuple(ROADWORKS), side=SIDES), "site")
+A_ROW = language({"angle": Part("angle")}, "row of parked cars")
 CLOCK = "clock"
 CONDITIONS: Mapping[str, tuple[str, str]] = {
     str(word): (field, str(word))
@@ -559,7 +560,8 @@ def scene_plan(scene: Scene) -> str:
         line.append(f"{actor}: {actions}" if actions else actor)
     line += [" ".join([SIGNAL, *written(scene.signal, A_SIGNAL)])] if scene.signal else []
     line += [scene.flow or "", f"oncoming {scene.oncoming}" if scene.oncoming else ""]
-    line += [f"parked {side}" for side in scene.parked]
+    slant = "".join(f" {each}" for each in written(scene, A_ROW))
+    line += [f"parked {side}" + slant * (side == scene.parked[-1]) for side in scene.parked]
     line += [f"{air.kind} {amount_text(air.amount)}" for air in scene.weather]
     patches = [" ".join([SLIPPERY, *written(patch, A_PATCH)]) for patch in scene.slippery]
     patches += [" ".join([WORKS, *written(each, A_SITE)]) for each in scene.roadworks]
@@ -593,12 +595,13 @@ def scene_fields(text: str) -> dict[str, object]:
     for part in filter(None, map(str.strip, text.split(";"))):
         first, *words = part.replace(":", " : ").split()
         if first == "parked":
-            if len(words) != 1 or words[0] not in {*SIDES} - {*several["parked"]}:
+            if not words or words[0] not in {*SIDES} - {*several["parked"]}:
                 raise BriefError(
                     f"'{part[:40]}' is no row of parked cars; write parked left or parked right, each once, "
                     "or for a single car with numbers of its own: car parked right gap=40"
                 )
             several["parked"].append(words[0])
+            _read_words(fields, words[1:], A_ROW)
         elif first == "oncoming" and len(words) == 1 and words[0] in (*FLOWS, "none"):
             _set(fields, first, words[0])
         elif first in (*ROAD_USERS, *PLACES):

@@ -171,6 +171,8 @@ class Role(Frozen):
     comes from, or else from the kerb. Beyond 0 to 100, one touches the side of the other, or passes."""
     offset: Amount | None = None
     away: Amount | None = None
+    angle: Amount | None = None
+    """Between the lane and a parking bay from which it turns in, or reverses."""
     hits: str | None = None
     """Which face of the tested car it hits, or its "mirror", if that does not react: ``impact`` percent along
     the face; or whom else it hits, such as "van 1". Where it is and when it acts are found for that."""
@@ -193,6 +195,8 @@ class Role(Frozen):
                 raise ValueError(f"who is {spot.said} has no {NUMBERS[field].key}=; leave it out")
         if self.gap and self.at and (self.where not in ("crossing", "beside") or self.at.word == "in"):
             raise ValueError(f"{one} has 'gap' and '{self.at}'; give one of them")
+        if self.angle and {"turn_in", "reverse"}.isdisjoint(each.what for each in self.actions):
+            raise ValueError(f"{one} in a bay with an angle= pulls out of it: turn_in, or reverse")
         if self.gap and self.where == "crossing" and not self.at:
             raise ValueError("who is crossing has no gap= but to a place; write before or after junction 1")
         if self.at and self.at.what:
@@ -408,6 +412,8 @@ class Scene(Frozen):
     """The same for the oncoming lanes; None: as ``flow``."""
     parked: Annotated[tuple[Side, ...], AfterValidator(lambda sides: tuple(sorted({*sides})))] = ()
     """The sides on which cars are parked in a row."""
+    angle: Amount | None = None
+    """Between the lane and the cars of these rows; None: along the lane."""
     weather: tuple[Air, ...] = ()
     """What falls or floats, each kind once, in the order of the table."""
     clock: Clock | None = None
@@ -760,7 +766,8 @@ def parts_said(scene: Scene) -> Iterator[str]:
             density = "" if value == "none" else f" ({FLOWS[value]} vehicles for each km of a lane)"
             yield said.format(value.replace("none", "no")) + density
         elif name == "parked" and value:
-            yield f"cars parked on {'both sides' if len(value) > 1 else f'the {value[0]}'}"
+            slant = f" {NUMBERS['angle'].said.format(scene.angle)}" if scene.angle else ""
+            yield f"cars parked on {'both sides' if len(value) > 1 else f'the {value[0]}'}{slant}"
         elif value:
             each_of = value if isinstance(value, tuple) else (phrases.get(value, value),)
             yield from map(said.format, each_of)

@@ -436,7 +436,7 @@ def measured_junctions(route: "Route") -> list[MeasuredJunction]:
 
 @dataclass(frozen=True)
 class MeasuredLanes:
-    """A place where the number of lanes changes, where the route changes its lane, or a crosswalk."""
+    """A place where the number of lanes changes, where the route changes it, a crosswalk or a bus bay."""
 
     s: float  # station in metres
     kind: LaneKind
@@ -456,7 +456,7 @@ def measured_places(route: "Route") -> list[MeasuredJunction | MeasuredLanes]:
 def _lane_places(route: "Route") -> Iterator[MeasuredLanes]:
     network = route.network
     for (_, one), (start, two) in pairwise(route.roads):
-        if RoadEnd(one.id, "end") not in network.continued_at or is_beside_ramp(network, one, two):
+        if RoadEnd(one.id, "end") not in network.continued_at or is_beside_place(network, one, two):
             continue
         before, after = one.profile.count[0], two.profile.count[0]
         lanes = [leg.lane for leg in route.legs if leg.road == two.id]
@@ -471,6 +471,8 @@ def _lane_places(route: "Route") -> Iterator[MeasuredLanes]:
                 yield MeasuredLanes(start, "lane_gain", side, _narrow_part(two, at_end=False))
         elif network.continued_at[RoadEnd(one.id, "end")].crosswalk:
             yield MeasuredLanes(start, "crosswalk", None)
+        elif "parking" in (strip.kind for strip in two.profile.along):
+            yield MeasuredLanes(start, "bus_bay", None)
         elif len(lanes) > 1:
             is_left = (lanes[1] > lanes[0]) == two.profile.leads_along(lanes[0])
             middle = two.road.length / len(lanes[1:]) / 2
@@ -488,10 +490,15 @@ def _narrow_part(member: NetworkRoad, at_end: bool) -> float:
     return float(found)
 
 
-def is_beside_ramp(network: Network, one: NetworkRoad, two: NetworkRoad) -> bool:
-    """Returns whether a change of lanes between two roads belongs to a ramp: the first road begins at a merge
-    and has the lane for acceleration, or the second ends at an exit and has the lane for deceleration."""
+def is_beside_place(network: Network, one: NetworkRoad, two: NetworkRoad) -> bool:
+    """Returns whether a change of lanes between two roads belongs to a ramp or to the island of a crosswalk:
+    the first road begins at a merge and has the lane for acceleration, or the second ends at an exit and has
+    the lane for deceleration; or one of them has the island."""
     ends = (RoadEnd(one.id, "start"), "merge"), (RoadEnd(two.id, "end"), "diverge")
+    crossed = {end for each in network.continuations if each.crosswalk for end in (each.before, each.after)}
+    is_island = one.profile.is_divided != two.profile.is_divided
+    if is_island and not crossed.isdisjoint((RoadEnd(one.id, "start"), RoadEnd(two.id, "end"))):
+        return True
     return any(
         (number := network.junction_at.get(end)) is not None and network.junction(number).kind == kind
         for end, kind in ends
@@ -523,10 +530,11 @@ def _measured(network: Network, passage: "Passage", directions: Sequence[float])
     ramp = ramp_of(network, passage.entered)
     around = 1 if not network.left_hand else -1
     gaps = [around * (b - a) % 360 for a, b in pairwise([*directions, directions[0]])]
+    own: JunctionKind = passage.entered.kind if gaps[1:] else "turning_circle"
     ways = tuple((each - directions[0]) % 360 - 180 for each in directions[1:])
     return MeasuredJunction(
         passage.start,
-        kinds_of(gaps) if ring is None and ramp is None else (passage.entered.kind,),
+        kinds_of(gaps) if ring is None and ramp is None else (own,),
         tuple(gaps),
         180.0 if passage.exit == len(passage.arms) else ways[passage.exit - 1],
         passage.exit,
@@ -641,7 +649,8 @@ def _node(network: Network, junctions: tuple[Junction, ...]) -> MeasuredNode:
     directions = directions_of(network, [arm.end for arm in arms])
     around = -1 if is_ring and network.left_hand else 1
     gaps = [around * (b - a) % 360 for a, b in pairwise([*directions, directions[0]])]
-    kinds: tuple[JunctionKind, ...] = ("roundabout",) if is_ring else kinds_of(gaps)
+    own: JunctionKind = "roundabout" if gaps[1:] else "turning_circle"
+    kinds = (own,) if is_ring else kinds_of(gaps)
     x, y, _ = junctions[0].node
     return MeasuredNode((x, y), kinds, frozenset(arm.control for arm in arms))
 

@@ -23,6 +23,7 @@ from roadgpt.brief.junctions import (
     ARMS,
     LANE_KINDS,
     RAMPS,
+    RINGS,
     SIDE,
     SIZES,
     JunctionClause,
@@ -41,6 +42,7 @@ from roadgpt.brief.model import (
 from roadgpt.brief.ranges import Range, nearest, overlap
 from roadgpt.brief.words import MOST_LANES, ROAD
 from roadgpt.language.names import JunctionKind, PlainKind
+from roadgpt.language.table import ROADS
 from roadgpt.network.building import BETWEEN, MOUTH, TURN_TAPER, USUALLY_FED, ring_width, smallest_radius
 from roadgpt.network.building import MOST_LANES as MOST_RING_LANES
 from roadgpt.network.growing import BEFORE_TURN_LANES, controls_of
@@ -61,6 +63,7 @@ from roadgpt.road.design import (
 LANES = ("lanes", "against", "divided", "centre", "motorway", "length")
 """Requirements that leave the shape of a road open."""
 GRADES = ("slope", "incline")
+KEEPS_LANES = ("lane_change", "crosswalk", "bus_bay")
 ON_MOTORWAY = 2  # lanes of a carriageway of a motorway, if no number is required
 LEAST_TAPER = 10.0  # m
 MOST_IN_TAPER = 0.6  # greatest share of the required length of a road that a taper takes
@@ -167,7 +170,7 @@ def drawn_change(asked: JunctionClause, around: Sequence[Brief]) -> LanesChangeD
     room = MOST_IN_TAPER * min(span(road.length).hi for road in around)
     length = max(min(TAPER, room), LEAST_TAPER) if asked.length is None else _length(asked.length)
     return LanesChangeDesign.model_validate(
-        {"after": 1, "kind": asked.kind, "side": side, "length": round(length, 1)}
+        {"after": 1, "kind": asked.kind, "side": side, "length": round(length, 1), "island": asked.island}
     )
 
 
@@ -339,7 +342,7 @@ def _of_same_road(known: Brief, road: Brief, place: JunctionClause) -> Brief:
     number of lanes along the road is left open as well if ``place``, which is between the parts, changes it.
     """
     says_against = road.against is not None or road.divided
-    keeps_lanes = place.kind in (*RAMPS, "lane_change", "crosswalk") and road.lanes is None
+    keeps_lanes = place.kind in (*RAMPS, *KEEPS_LANES) and road.lanes is None
     return road.model_copy(
         update={
             "lanes": known.lanes if keeps_lanes else road.lanes,
@@ -439,7 +442,7 @@ def _behind(
         return max(before - 1, 1)
     if place.kind == "lane_gain":
         return min(before + 1, MOST_LANES)
-    if place.kind in ("lane_change", "crosswalk") or (place.kind in RAMPS and place.take == "main"):
+    if place.kind in KEEPS_LANES or (place.kind in RAMPS and place.take == "main"):
         return before
     if place.kind == "merge":
         return _where_ramps_are(places[n:])
@@ -506,7 +509,7 @@ def drawn_junction(
             for n, angle in enumerate(angles)
         )
         radius = ceil(10 * _radius(clause, angles, rng, haste)) / 10
-        if kind == "roundabout" and radius < smallest_radius(np.radians([-180.0, *angles]).tolist()):
+        if kind in RINGS and radius < smallest_radius(np.radians([-180.0, *angles]).tolist()):
             continue
         kerb = float(rng.uniform(*KERBS))
         drawn = JunctionDesign(
@@ -695,7 +698,7 @@ def _towards(clause: JunctionClause, angles: Sequence[float]) -> int | None:
 
 
 def _radius(clause: JunctionClause, angles: Sequence[float], rng: Rng, haste: float) -> float:
-    if clause.kind != "roundabout":
+    if clause.kind not in RINGS:
         return ISLANDS[0]
     allowed = span(clause.radius)
     if clause.outer is not None:
@@ -704,7 +707,8 @@ def _radius(clause: JunctionClause, angles: Sequence[float], rng: Rng, haste: fl
         outer = SIZES[clause.size].drawn_in(0.5, 0.1)
         allowed = overlap(allowed, _island(outer, _ring_lanes(clause))) or allowed
     elif clause.radius is None:
-        allowed = Range(*ISLANDS)
+        across = ROADS["junctions"][clause.kind].get("across")
+        allowed = _island(Range(*across), 1) if across else Range(*ISLANDS)
     gaps = [b - a for a, b in pairwise([-180.0, *angles, 180.0])]
     usual = (2 * MOUTH + BETWEEN) / (min(gaps) * pi / 180)
     low, high = max(allowed.lo, 3.0), min(allowed.hi, max(allowed.lo, 3.0) * 1.5 + 5)

@@ -27,7 +27,7 @@ from roadgpt import check
 from roadgpt.brief.amount import Amount, at_least, between, exactly, span
 from roadgpt.brief.design_speed import limits_at
 from roadgpt.brief.junction_check import check_junction, faults_beside_ramps
-from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, MapClause, side_of
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, RINGS, JunctionClause, MapClause, side_of
 from roadgpt.brief.map_fit import EDGE, LEADS
 from roadgpt.brief.model import Brief, Clause, mirrored
 from roadgpt.brief.normal import BUMPS
@@ -296,7 +296,7 @@ class NetworkSearch(_Search):
             else:
                 drawn = drawn_junction(self._asked_of(number), self.rng, haste, named)
             if drawn is None:
-                is_small = clause.kind == "roundabout" and not (clause.take and clause.exit)
+                is_small = clause.kind in RINGS and not (clause.take and clause.exit)
                 why = "such an island is too small for so many arms" if is_small else "it has no such ways on"
                 self.failed[f"{why} at a {clause.name}"] += 1
                 return None

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from roadgpt.brief.junctions import RINGS
 from roadgpt.design.layout import PlanLine
 from roadgpt.geometry.nearness import Complex, meeting
 from roadgpt.network.building import lines_at_ramp, ring_width
@@ -106,7 +107,7 @@ class _Pen:
         node = self._end + way * far[0]
         self.nodes.append((node, max(far) + AWAY))
         here = [self._arrival]
-        if junction.kind == "roundabout":
+        if junction.kind in RINGS:
             around = np.exp(1j * np.linspace(0, 2 * pi, POINTS, endpoint=False))
             half = ring_width(junction.radius, junction.ring_lanes) / 2
             shoulder = max(arm.shoulder_width for arm in arms)

@@ -18,7 +18,7 @@ TYPES = {
 }  # fmt: skip
 """The types of names, and the file and the part whose rows have them."""
 OF_JUNCTIONS = {
-    "PlainKind": ("plain",), "MapJunctionKind": ("plain", "open"), "RampKind": ("ramp",),
+    "PlainKind": ("plain", "end"), "MapJunctionKind": ("plain", "open"), "RampKind": ("ramp",),
     "LaneKind": ("lane",),
 }  # fmt: skip
 """The types of some kinds of junctions, and the groups of these."""

@@ -26,8 +26,8 @@ Size = Literal["long", "short"]
 Slope = Literal["up", "down", "flat", "nearly_flat", "gently_up", "gently_down", "steeply_up",
     "steeply_down"]
 Bump = Literal["crest", "dip"]
-JunctionKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout", "junction", "merge",
-    "diverge", "lane_drop", "lane_gain", "lane_change", "crosswalk"]
+JunctionKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout", "turning_circle",
+    "junction", "merge", "diverge", "lane_drop", "lane_gain", "lane_change", "crosswalk", "bus_bay"]
 Control = Literal["priority", "yield", "stop", "lights", "none"]
 IslandSize = Literal["mini", "normal", "large"]
 Take = Literal["left", "right", "straight", "back", "sharp_left", "sharp_right", "slight_left",
@@ -40,7 +40,7 @@ Compass = Literal["west", "southwest", "south", "southeast", "east", "northeast"
 Shown = Literal["red", "yellow", "green"]
 Face = Literal["front", "rear", "left", "right"]
 Works = Literal["narrowed", "closed", "shoulder"]
-PlainKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout"]
+PlainKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout", "turning_circle"]
 MapJunctionKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout", "junction"]
 RampKind = Literal["merge", "diverge"]
-LaneKind = Literal["lane_drop", "lane_gain", "lane_change", "crosswalk"]
+LaneKind = Literal["lane_drop", "lane_gain", "lane_change", "crosswalk", "bus_bay"]

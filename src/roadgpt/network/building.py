@@ -39,7 +39,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from itertools import pairwise
 
-from roadgpt.brief.junctions import side_of
+from roadgpt.brief.junctions import RINGS, side_of
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.geometry.curve import Point, wrapped
@@ -103,7 +103,7 @@ class Builder:
         point in metres at which the reference lines would meet. ``distances`` are those in metres from the
         node to the contacts of the stubs, and decide how much room there is; the kerb is only stored. All
         sequences are in counter-clockwise order."""
-        if design.kind == "roundabout":
+        if design.kind in RINGS:
             return build_roundabout(self, design, node, stubs, controls)
         number, far = self.number(), distances
         connections = [
@@ -411,6 +411,7 @@ MINI = 8.0  # m, largest radius of the island of a mini roundabout, with an oute
 MOUTH = 9.5  # m along the ring, from the middle of a mouth to either end
 SMALLEST_MOUTH = 4.4  # m; with a shorter one, kerbs between the arms have radii below 3 m
 BETWEEN = 2.0  # m along the ring, between two mouths
+ALONE = 2 * math.pi / 3  # rad, of the ring for the mouth of the only arm: as of one of three
 APPROACH = 9.0  # m, from the outer edge of the ring to the contact of an arm
 
 
@@ -440,7 +441,7 @@ def smallest_radius(directions: Sequence[float]) -> float:
 
 
 def _least_gap(directions: Sequence[float]) -> float:
-    return min((b - a) % (2 * math.pi) for a, b in pairwise([*directions, directions[0]]))
+    return min((b - a) % (2 * math.pi) for a, b in pairwise([*directions, directions[0]])) or ALONE
 
 
 def around_length(radius: float, directions: Sequence[float], angle: float, lanes: int) -> float:
@@ -475,7 +476,7 @@ def build_roundabout(
     numbers, ring = [builder.number() for _ in stubs], list[int]()
     found = Roundabout(tuple(numbers), (), centre, radius, ring_width(radius, lanes))
     for one, two in pairwise([*directions, directions[0]]):  # from the mouth of each arm to the next mouth
-        gap = (two - one) % (2 * math.pi)
+        gap = (two - one) % (2 * math.pi) or 2 * math.pi
         ring.append(builder.add(_arc(found, one + half, gap - 2 * half, lanes, "broken")))
     found = replace(found, ring=tuple(ring))
     for i, stub in enumerate(stubs):
@@ -715,6 +716,23 @@ def with_turn_lanes(profile: Profile, junction: JunctionDesign) -> Profile:
     for side in junction.turn_lanes:
         found = _with_lane(found, lane, side == "left")
     return replace(found, centre_marking="solid") if found.centre_marking == "broken" else found
+
+
+ISLAND_WIDTH = 2.0  # m, at a crosswalk: for persons to wait, at least (RASt 06, section 6.1.8)
+ISLAND_LENGTH = 8.0  # m before and behind the end of the road at which the crosswalk is
+ISLAND_TAPER = 29.0  # m, in which the lanes move aside by half of that: V sqrt(i / 3) at 50 km/h (RAS-K-1)
+
+
+def with_island(profile: Profile, at_end: bool) -> Profile:
+    """Returns the cross-section of the part of a road before or behind a crosswalk with an island: a median
+    from which both directions move away."""
+    wide, long = ISLAND_WIDTH, ISLAND_LENGTH
+    to, off = [(0.0, 0.0), (ISLAND_TAPER, wide)], [(0.0, wide), (long, wide), (long + ISLAND_TAPER, 0.0)]
+    width = CubicProfile.smooth(to if at_end else off)
+    found = _constant(profile, FAR if at_end else 0.0)
+    offset = added([(1, found.offset), (-0.5, width)], FAR)
+    left = (LaneStrip("median", width, "solid"), *found.left)
+    return replace(found, left=left, offset=offset, centre_marking="solid")
 
 
 def _constant(profile: Profile, s: float) -> Profile:

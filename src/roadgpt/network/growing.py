@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import cast
 
-from roadgpt.brief.junctions import side_of
+from roadgpt.brief.junctions import RINGS, side_of
 from roadgpt.errors import UsageError
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.geometry.curve import wrapped
@@ -18,6 +18,8 @@ from roadgpt.geometry.pieces import joined
 from roadgpt.language.names import Control, PlainKind
 from roadgpt.network.building import (
     FAR,
+    ISLAND_LENGTH,
+    ISLAND_TAPER,
     USUALLY_FED,
     Builder,
     RampBuilder,
@@ -29,6 +31,7 @@ from roadgpt.network.building import (
     length_of_turn_lanes,
     setbacks,
     smallest_radius,
+    with_island,
     with_turn_lanes,
 )
 from roadgpt.network.lane_along import legs_along
@@ -132,7 +135,11 @@ class _RouteGrowth:
             self._pass_junction(number, place, is_level)
         elif isinstance(place, LanesChangeDesign):  # another road continues that of arrival, with other lanes
             road = self._road(number, self._end(), (True, is_level))
-            self._continue(self.passed[-1], road, continued_lanes(place, *around), place.kind == "crosswalk")
+            if place.island:
+                self._pass_island(road)
+            else:
+                lanes = continued_lanes(place, *around)
+                self._continue(self.passed[-1], road, lanes, place.kind == "crosswalk")
             if place.kind == "lane_change":
                 self.shifts[road] = 1 if place.side == "left" else -1
         else:
@@ -147,6 +154,31 @@ class _RouteGrowth:
         self.builder.continuations.append(Continuation(*ends, lanes, crosswalk))
         self.passed.append(road)
 
+    def _split(self, number: int, s: float, before: Profile, behind: Profile) -> int:
+        """Makes a road end at a station, and returns the id of a new one that leads on from there."""
+        first, last = parts_of(self.builder.roads[number].road, s)
+        self.builder.roads[number] = NetworkRoad(number, first.with_profile(before))
+        return self.builder.add(last.with_profile(behind))
+
+    def _pass_island(self, road: int) -> None:
+        """Goes on to a road across a crosswalk with an island. The parts beside it are roads of their own."""
+        (before, one), (_, two) = ((n, self.builder.roads[n].road) for n in (self.passed[-1], road))
+        own, long = self.builder.roads[before].profile, ISLAND_TAPER + ISLAND_LENGTH
+        if own.is_divided or not own.against_ids:
+            raise UsageError("an island divides the two directions of a road without a median; leave it out")
+        if (least := long + BEFORE_TURN_LANES) > (shorter := min(one.length, two.length)):
+            raise UsageError(
+                f"an island needs {least:.0f} m of the roads before and behind it, and one is "
+                f"{shorter:.0f} m long; make it longer"
+            )
+        behind = self.builder.roads[road].profile
+        wide = self._split(before, one.length - long, own, with_island(own, at_end=True))
+        rest = self._split(road, long, with_island(behind, at_end=False), behind)
+        lanes = tuple((n, n + (n > 0)) for n in (*own.along_ids, *own.against_ids))
+        self._continue(before, wide, lanes)
+        self._continue(wide, road, tuple((n, n) for _, n in lanes), crosswalk=True)
+        self._continue(road, rest, tuple((n, number) for number, n in lanes))
+
     def _add_turn_lanes(self, junction: JunctionDesign) -> None:
         """Makes the last part of the road of arrival a road of its own, with turn lanes."""
         arrival, profile = self.passed[-1], self.builder.roads[self.passed[-1]].profile
@@ -158,9 +190,7 @@ class _RouteGrowth:
                 f"its turn lanes need {BEFORE_TURN_LANES + length:.0f} m of the road before it, which is "
                 f"{whole.length:.0f} m long or changes its lanes there; make that road longer"
             )
-        first, last = parts_of(whole, start)
-        self.builder.roads[arrival] = NetworkRoad(arrival, first.with_profile(profile))
-        wide = self.builder.add(last.with_profile(with_turn_lanes(profile, junction)))
+        wide = self._split(arrival, start, profile, with_turn_lanes(profile, junction))
         inside = int("left" in junction.turn_lanes)
         lanes = (*((n, n - inside) for n in profile.along_ids), *((n, n) for n in profile.against_ids))
         self._continue(arrival, wide, lanes)
@@ -232,7 +262,7 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
         UsageError: The arm that the route takes has ``one_way``, or no arm fits ``take``."""
     width, shoulder = float(after.width(0.0)), after.shoulder_width
     ring, arms, taken = (junction.ring_lanes, junction.ring_lanes), junction.all_arms, junction.taken
-    counts = (ring, ring) if junction.kind == "roundabout" else ((1, 1), before.count)
+    counts = (ring, ring) if junction.kind in RINGS else ((1, 1), before.count)
     side, ahead = (Profile.of(*count, width, shoulder) for count in counts)
     found = [
         after if n == taken else ahead if side_of(arm.angle) == "straight" else side
@@ -263,7 +293,7 @@ def _continuing(junction: JunctionDesign) -> int | None:
     """Returns the index of the arm opposite the arm that the route takes; None at a roundabout, or if only
     the road of arrival or no road lies there."""
     taken = junction.taken
-    if taken is None or junction.kind == "roundabout":
+    if taken is None or junction.kind in RINGS:
         return None
     angles = [arm.angle for arm in junction.all_arms]
     behind = math.radians(angles[taken] + 180)
@@ -291,7 +321,7 @@ def contact_distances(
     road of arrival; ``profiles`` are the cross-sections of the arms. The road of arrival and one-way roads
     into the junction end here, so the widths at their ends count. All other roads begin here, so the widths
     at their starts count. Raises UsageError if the island of a roundabout is too small for its arms."""
-    if junction.kind != "roundabout":
+    if junction.kind not in RINGS:
         ends_here = {0, *(n for n, arm in enumerate(junction.all_arms, 1) if arm.one_way == "in")}
         mouths = []
         profiles = [with_turn_lanes(profiles[0], junction), *profiles[1:]]
@@ -317,7 +347,7 @@ def length_inside(place: PlaceDesign, before: Profile, after: Profile) -> float:
     taken = place.taken
     directions = [math.pi, *(math.radians(arm.angle) for arm in place.all_arms)]
     distances = contact_distances(place, directions, [before, *profiles_of_arms(place, before, after)])
-    if place.kind == "roundabout":
+    if place.kind in RINGS:
         angle = 2 * math.pi if taken is None else directions[taken + 1] + math.pi
         return around_length(place.radius, directions, angle, place.ring_lanes)
     assert taken is not None
@@ -340,6 +370,8 @@ def controls_of(junction: JunctionDesign) -> tuple[Control, ...]:
 
     The ``control`` of an arm replaces the sign or light of this arm."""
     arms, control, taken = junction.all_arms, junction.control, junction.taken
+    if not arms:
+        return ("none",)
     nearest = min(range(len(arms)), key=lambda n: abs(arms[n].angle))
     opposite = nearest if abs(math.radians(arms[nearest].angle)) <= LEAST else None
     if junction.kind == "roundabout" and control != "lights":
@@ -371,6 +403,8 @@ def signs_at(node: MapNode, directions: Sequence[float]) -> tuple[Control, ...]:
     a sign with "none". Otherwise the two arms that are most nearly opposite are the main road and have
     priority; the other arms have stop signs with "stop", and give way with "yield" or "priority"."""
     count = len(directions)
+    if count == 1:
+        return ("none",)
     if node.kind == "roundabout":
         return (node.control if node.control in ("lights", "stop") else "yield",) * count
     pairs = [(i, j) for i in range(count) for j in range(i)]

@@ -17,7 +17,7 @@ from pydantic import TypeAdapter
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array, Point
-from roadgpt.language.names import Control, MapJunctionKind, PlainKind
+from roadgpt.language.names import Control, PlainKind
 from roadgpt.reading import strictly
 from roadgpt.road import Profile, Road
 from roadgpt.road.design import mirrored_point
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 Contact = Literal["start", "end"]
 OTHER_CONTACT: dict[Contact, Contact] = {"start": "end", "end": "start"}
-Kind = Literal[MapJunctionKind, "merge", "diverge"]
+Kind = Literal[PlainKind, "junction", "merge", "diverge"]
 MOST_ROADS = 20_000
 T_GAP = (145.0, 215.0)  # degrees, the largest gap between the arms of a T-junction
 T_OTHERS = 55.0  # degrees, least other gap

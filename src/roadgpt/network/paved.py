@@ -44,6 +44,20 @@ def areas_of(roads: Sequence[Road], sag: float = SAG) -> NDArray[np.object_]:
     return areas
 
 
+def bays_of(roads: Sequence[Road]) -> list[Area]:
+    """Returns the areas of the bays and parking lanes beside the lanes of roads, seen from above."""
+    import shapely
+
+    found = []
+    for road in roads:
+        s, profile = stations_of(road), road.profile
+        assert profile is not None
+        for number in (number for number, lane in profile.lanes.items() if lane.kind == "parking"):
+            left, right = (road.at(s, t)[:, :2] for t in profile.edges_of(number, s))
+            found.append(shapely.Polygon([*left, *right[::-1]]).buffer(0.0))
+    return found
+
+
 def covered_by(areas: Sequence[Area] | NDArray[np.object_]) -> Area:
     """Returns the area that several areas cover together; holes up to ``SLIVER`` m^2 are filled. The corners
     of ``areas`` should be rounded to ``GRID``. The corners of the union are rounded afterwards, which takes

@@ -261,6 +261,8 @@ def profiles_between(
         drop = after if isinstance(after, LanesChangeDesign) and after.kind == "lane_drop" else None
         if gain is not None or drop is not None:
             found[n] = _tapered(found[n], gain, drop, length)
+        if before is not None and before.kind == "bus_bay":
+            found[n] = _with_bay(found[n], length)
         is_ramp = _is_ramp(after, "merge") or _is_ramp(before, "diverge")
         if is_ramp and (lanes[n].forward, lanes[n].backward) != (1, 0):
             raise UsageError(
@@ -342,6 +344,21 @@ def _profile(lanes: LanesDesign, shoulder: float) -> Profile:
     if lanes.divided:
         made = replace(made, left=(LaneStrip("median", MEDIAN, "solid"), *made.left), centre_marking="solid")
     return made if lanes.centre is None else replace(made, centre_marking=lanes.centre)
+
+
+BAY = [(0.0, 0.0), (25.0, 3.0), (43.0, 3.0), (58.0, 0.0)]
+"""Stations and depths in metres of a bus bay: 25 m to go in, 18 m to stand, 15 m to go out (RASt 06)."""
+
+
+def _with_bay(profile: Profile, length: float) -> Profile:
+    """Returns the cross-section with a bus bay between the lanes along the road and the shoulder."""
+    if length < BAY[-1][0]:
+        raise UsageError(
+            f"a bus bay needs {BAY[-1][0]:.0f} m of the road behind it, which is {length:.0f} m long; make "
+            "that road longer"
+        )
+    count, bay = profile.count[0], LaneStrip("parking", CubicProfile.smooth(BAY))
+    return replace(profile, right=(*profile.right[:count], bay, *profile.right[count:]))
 
 
 def _tapered(

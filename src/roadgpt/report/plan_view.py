@@ -47,6 +47,7 @@ def draw_network(axes: Axes, route: Road, network: "Network", per_inch: float) -
     """Draws a network and the lane of the route; a map without a route has no such lane. ``per_inch`` is the
     number of metres per inch of the picture."""
     from roadgpt.network.markings import arrows, between_crosswalks, strokes
+    from roadgpt.network.paved import bays_of
     from roadgpt.network.paved import stations_of as stations_on
     from roadgpt.network.route import area_with_verges
     from roadgpt.network.surface import NetworkSurface
@@ -55,6 +56,8 @@ def draw_network(axes: Axes, route: Road, network: "Network", per_inch: float) -
     if surface.shoulder > 0:
         _fill(axes, area_with_verges(network), VERGE, 1)
     _fill(axes, network.paved, ASPHALT, 2)
+    for bay in bays_of([member.road for member in network.roads_outside]):
+        _fill(axes, bay, ASPHALT, 2)
     for area in surface.areas:
         for island in area.kerbed:
             _fill(axes, island, KERB, 2.1)

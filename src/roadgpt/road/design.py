@@ -50,7 +50,7 @@ from typing import Annotated, Any, Literal, NamedTuple, Self, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, StrictBool, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
-from roadgpt.brief.junctions import LANE_KINDS, RAMPS, side_of
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, RINGS, side_of
 from roadgpt.brief.words import MOST_LANES
 from roadgpt.errors import UsageError
 from roadgpt.language.names import Control, LaneKind, PlainKind, Side
@@ -80,7 +80,8 @@ MEDIAN = 2.0  # m, width of a median
 TAPER = 60.0  # m, length of the taper of a lane that ends or begins
 LEAST_WIDTH = 1.5  # m; where a lane is narrower than this, no car can drive in it
 
-USUAL = {"ring_lanes": 1, "crosswalk": False, "taper": RAMP_TAPER, "turn_lanes": (), "turn_length": 25.0}
+USUAL = {"ring_lanes": 1, "taper": RAMP_TAPER, "turn_lanes": (), "turn_length": 25.0}
+USUAL |= {"crosswalk": False, "island": False}
 """Fields of a junction or a ramp that are written only if they differ from these values."""
 RARE = {"divided": False, "edge": "solid"}
 """Fields of a LanesDesign that are written only if they differ from these values."""
@@ -100,6 +101,7 @@ USUAL_ARMS: dict[PlainKind, tuple[float, ...]] = {
     "crossroads": (-90.0, 0.0, 90.0),
     "star": (-108.0, -36.0, 36.0, 108.0),
     "roundabout": (-90.0, 0.0, 90.0),
+    "turning_circle": (),
 }
 """The angles in degrees of the arms of a junction whose design gives no arms."""
 COUNTS: dict[PlainKind, tuple[int, int]] = {
@@ -108,6 +110,7 @@ COUNTS: dict[PlainKind, tuple[int, int]] = {
     "crossroads": (3, 3),
     "star": (4, MOST_ARMS),
     "roundabout": (2, 5),
+    "turning_circle": (0, 0),
 }
 """The smallest and the largest number of arms, without the road of arrival."""
 Take = Literal["left", "right", "straight"] | Annotated[int, Field(ge=1)]
@@ -280,6 +283,8 @@ class LanesChangeDesign(FrozenFields):
     """Whether the leftmost or the rightmost lane ends or begins, or the side to which the route changes."""
     length: LaneLength = TAPER
     """Length in metres of the taper in which the lane ends or begins; not used for a lane change."""
+    island: StrictBool = False
+    """Whether a crosswalk has an island between the directions."""
     lanes: LanesDesign | None = None
     """The lanes of the road behind this place; None for the lanes of the road before it, less the lane that
     ends or plus the lane that begins."""
@@ -370,7 +375,7 @@ class JunctionDesign(FrozenFields):
         route turns back at a roundabout. Raises UsageError if no arm, or more than one, fits ``take``."""
         arms = self.all_arms
         if isinstance(self.take, int):
-            most = len(arms) + (self.kind == "roundabout")
+            most = len(arms) + (self.kind in RINGS)
             if self.take > most:
                 raise UsageError(f"take {self.take} is more than the number of exits; give 1 to {most}")
             return self.take - 1 if self.take <= len(arms) else None
@@ -697,7 +702,8 @@ def _check_object(what: str, raw: Any, fields: str) -> None:
     """Raises UsageError if parsed JSON is not an object, or has true or false in place of a number."""
     if not isinstance(raw, Mapping):
         raise UsageError(f"{what} cannot be read: give an object with {fields}")
-    _no_truths(what, {name: value for name, value in raw.items() if name not in ("divided", "crosswalk")})
+    truths = ("divided", "crosswalk", "island")
+    _no_truths(what, {name: value for name, value in raw.items() if name not in truths})
 
 
 def _check_order(junctions: Sequence[PlaceDesign], segments: int) -> None:
@@ -989,7 +995,8 @@ def _check_route(design: Design) -> None:
         if design.nodes[number - 1].kind == "bend":
             raise UsageError(f"the route begins or ends at node {number}, a bend; take a junction or an end")
     for before, here, after in zip(route, route[1:], route[2:], strict=False):
-        if before == after and design.nodes[here - 1].kind != "roundabout":
+        if before == after and design.nodes[here - 1].kind not in RINGS:
             raise UsageError(
-                f"the route turns back at node {here}, and one can only at a roundabout; leave out the rest"
+                f"the route turns back at node {here}, and one can only at a roundabout or a turning "
+                "circle; leave out the rest"
             )

@@ -28,6 +28,7 @@ PATH, RUNS, RUNNING_PATH = 1.0, 6.0 / 3.6, 1.5
 QUICKEST = 10.0  # m/s^2, with which a person starts at most
 SCALES: Mapping[str, float] = {
     "speed": 1 / 3.6, "faster": 1 / 3.6, "to": 1 / 3.6, "overlap": 0.01, "impact": 0.01,
+    "angle": math.pi / 180,
 }  # fmt: skip
 
 

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 BESIDE = 2.0  # m, from the outermost driving lane to the middle of who stands or walks beside it
 CLEAR = 0.15  # m, from a driving lane to a parked vehicle: 1 m to a car in a lane of 3.5 m (Euro NCAP, CPNCO)
 PLACE = 7.0  # m of a row for each parked vehicle: at least 6.5 m, of a delivery van
+BAY = 2.5  # m, width of a parking bay at an angle (RASt 06, section 6.1.5)
 FREE, VANS = 0.15, 0.1  # shares of the places that are free, and of vans among the parked vehicles
 KEPT_FREE = 5.0 + sum(CROSSWALK) + PLACE / 2
 """Metres from a junction to the middle of a parked vehicle: 5 m before and behind it and its crosswalks stay
@@ -132,6 +133,12 @@ def stretch_of(mark: Mark, road: "Road", path: Line) -> tuple[float, float]:
     return path.from_road(spans[at][0]), path.from_road(spans[at][1])
 
 
+def reach_of(kind: ActorKind, angle: float) -> float:
+    """Returns how far across the road somebody is who stands at an angle to it."""
+    length, width, _ = SIZES[kind]
+    return length * math.sin(angle) + width * math.cos(angle)
+
+
 def parked_rows(
     scene: Scene, road: "Road", world: "World", seed: int, free: Sequence[FloatArray] = ()
 ) -> list[tuple[ActorKind, FloatArray]]:
@@ -141,19 +148,25 @@ def parked_rows(
     import shapely
 
     rng = np.random.default_rng([seed, len(scene.actors), len(scene.parked)])
+    angle = drawn(scene, np.random.default_rng([seed, 109])).get("angle", 0.0)
+    place = BAY / math.sin(angle) if angle else PLACE
     lanes, middle = lanes_of(network_of(road, world)), world.profile_of(road).middle
     outer = "left" if world.profile_of(road).left_hand else "right"
     lines = [shapely.LineString(each[:, :2]).buffer(ROOM) for each in free]
     found = list[tuple[ActorKind, FloatArray]]()
     for side in scene.parked:
-        for s in np.arange(PLACE / 2, road.length - PLACE / 2, PLACE).tolist():
+        for s in np.arange(place / 2, road.length - place / 2, place).tolist():
             is_free, is_van = rng.random(2) < (FREE, VANS)
             if is_free or any(each.start - KEPT_FREE < s < each.end + KEPT_FREE for each in road.passages):
                 continue
             kind: ActorKind = "van" if is_van else "car"
-            t = float(middle(s)) + offset_of("parked", side, s, road, world, SIZES[kind].width)
+            deep = reach_of(kind, angle)
+            t = float(middle(s)) + offset_of("parked", side, s, road, world, deep)
             turned = side != outer and bool(_lanes_beside(s, road, world, LEAST)["oncoming"])
+            if angle:  # in the middle of its bay
+                s += (-1 if turned else 1) * deep / 2 / math.tan(angle)
             state = np.array([*road.at(s, t), float(road.heading(s)) + math.pi * turned, 0.0])
+            state[HEADING] += SIGN[side] * (-1 if turned else 1) * angle
             box = corners(state[:2], state[HEADING], np.array(SIZES[kind]))
             is_in_lane = any(each.lane.kind == "driving" for places in lanes.places(box) for each in places)
             if not is_in_lane and not any(line.intersects(shapely.Polygon(box)) for line in lines):

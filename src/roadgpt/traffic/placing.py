@@ -327,7 +327,8 @@ class Placing:
         """Returns the way of somebody who does not stay along the tested car's lane: to where the tested car
         is when it has rolled for long enough, or to the place that the scene says."""
         lane, (road, world, *_), at = self.course.lane, self.stage, self.role.at
-        front, v, away, crosses = self.met.s + self.half, self.met.v, self.n.get("away"), self.course.crosses
+        front, v, crosses = self.met.s + self.half, self.met.v, self.course.crosses
+        away, angle = self.n.get("away"), self.n.get("angle")
         near = front + v * (ROLL + HEADWAY if crosses else LAST)
         if at:
             first, last = stretch_of(at, road, lane)
@@ -337,7 +338,7 @@ class Placing:
         is_open = crosses and "station" not in self.n and not at
         last = lane.length - GOAL - self.size.width  # so that they meet on a short road, too
         near = min(near, last) if is_open else near
-        way = way_of(self.role, lane.to_road(max(near, 0.0)), road, world, away)
+        way = way_of(self.role, lane.to_road(max(near, 0.0)), road, world, away, angle)
         if not crosses or way.meets is None:
             return way
         begin, starts = way.meets[0], self.longitudinal.starts(self.cue)
@@ -346,7 +347,7 @@ class Placing:
             away = max(begin, min(reach(lasts, 0.0, *starts), FARTHEST))
         if is_open:
             near = max(near, min(front + v * (1.0 + lasts), last))
-        return way_of(self.role, lane.to_road(max(near, 0.0)), road, world, away)
+        return way_of(self.role, lane.to_road(max(near, 0.0)), road, world, away, angle)
 
     def _come_to(self, crossing: Meeting) -> None:
         """Chooses the meeting of somebody who comes along another way, and where it is at first. The places

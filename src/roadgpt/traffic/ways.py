@@ -25,7 +25,7 @@ from roadgpt.road.road import GOAL
 from roadgpt.traffic.actor import SIZES, FloatArray
 from roadgpt.traffic.lane_map import LEAST
 from roadgpt.traffic.lights import Lights, comes_from_side
-from roadgpt.traffic.places import BESIDE, SIGN
+from roadgpt.traffic.places import BESIDE, CLEAR, SIGN, reach_of
 
 KERB = 1.1  # m, between the lanes and who stands before a crosswalk, to walk at its speed on it (CPNA)
 BEFORE, BEHIND = 5.0, 8.0  # m, from a junction to those who cross the road before and behind it
@@ -45,13 +45,16 @@ TURNS: Mapping[What, tuple[float, float, tuple[bool, ...]]] = {
 lane."""
 
 
-def way_of(role: Role, near: float, road: Road, world: World, away: float | None = None) -> Line:
+def way_of(
+    role: Role, near: float, road: Road, world: World, away: float | None = None, angle: float | None = None
+) -> Line:
     """Returns the way of somebody who crosses the tested car's path, comes to it along other lanes, or turns
     off. ``meets`` is where, at station ``near`` of the tested car's road or later. Who crosses is ``away``
-    metres from the path at first; None: beside the lanes. Raises SceneError if the road has no such place."""
+    metres from the path at first; None: beside the lanes. Who is in a bay is at an ``angle`` to them. Raises
+    SceneError if the road has no such place."""
     turns_off = role.where != "oncoming" and any(each.what == "turn_off" for each in role.actions)
     if not turns_off and role.where not in (*WAYS, "oncoming"):
-        return _across(role, near, road, world, away)
+        return _across(role, near, road, world, away, angle)
     place = role.where if role.where in WAYS else "junction"
     find, wanted = WAYS["turn_off" if turns_off and place != "roundabout" else place]
     passages, mark = road.passages, role.at
@@ -68,9 +71,11 @@ def way_of(role: Role, near: float, road: Road, world: World, away: float | None
     raise SceneError(f"the route passes no {lacks}; change one of them")
 
 
-def _across(role: Role, near: float, road: Road, world: World, away: float | None) -> Line:
-    """Returns the way straight across the road, at right angles to the tested car's path, or into its lane
-    for who turns in."""
+def _across(
+    role: Role, near: float, road: Road, world: World, away: float | None, angle: float | None
+) -> Line:
+    """Returns the way straight across the road, at right angles to the tested car's path or at that of a bay
+    from which somebody reverses, or into its lane for who turns in."""
     s = near if role.where != "crosswalk" else _crosswalk(near, road, role.at is None)
     for passage in road.passages if role.where != "crosswalk" else ():
         if passage.start - BEFORE < s < passage.end + BEHIND and role.gap is None:
@@ -84,22 +89,27 @@ def _across(role: Role, near: float, road: Road, world: World, away: float | Non
     side = str(role.side or ("left" if profile.left_hand else "right"))
     half = SIZES[role.kind].length / 2
     beyond = half + KERB if role.where == "crosswalk" else max(BESIDE, half + 1.0)
-    begin = reach[side] + beyond if away is None else away
+    begin, sharp, slant = reach[side] + beyond, math.pi / 2, 0.0
+    if angle is not None:
+        begin, sharp, slant = reach[side] + CLEAR + reach_of(role.kind, angle) / 2, angle, 1 / math.tan(angle)
+    begin = begin if away is None else away
     end = reach["right" if side == "left" else "left"] + beyond
     across = np.linspace(begin, -end, math.ceil((begin + end) / SPACING) + 1)
-    along = np.full(len(across), s)
+    along = np.full(len(across), s) + slant * across
     if turns_in := "turn_in" in (each.what for each in role.actions):
         radius = min(DRIVEWAY, begin)
         s += radius / 2  # so that it comes into the lane behind the station
-        turn = np.linspace(0.0, math.pi / 2, math.ceil(radius * math.pi / 2 / SPACING) + 1)
-        straight, rest = across[across > radius], np.arange(s + SPACING, road.length, SPACING)
+        turn = np.linspace(math.pi / 2 - sharp, math.pi / 2, math.ceil(radius * sharp / SPACING) + 1)
+        deep = radius * (1 - math.sin(turn[0]))
+        straight, rest = across[across > deep], np.arange(s + SPACING, road.length, SPACING)
         across = np.r_[straight, radius * (1 - np.sin(turn)), 0 * rest]
-        along = np.r_[0 * straight + s - radius, s - radius * np.cos(turn), rest]
+        before = s - radius * math.cos(turn[0]) - slant * (straight - deep)
+        along = np.r_[before, s - radius * np.cos(turn), rest]
     t = profile.middle(along) + SIGN[side] * across
     xyz = road.at(along, t)
     xyz[:, 2] = road.at(along, np.clip(t, rims.right, rims.left))[:, 2]
     way, first = Line.through(xyz), int((across <= MERGED).argmax())
-    met = (float(way.stations[first]), float(along[first])) if turns_in else (begin, s)
+    met = (float(way.stations[first]), float(along[first])) if turns_in else (begin / math.sin(sharp), s)
     return replace(way, meets=met)
 
 

@@ -515,7 +515,7 @@ def _ring(network: Network, first: int, starts: Mapping[int, Junction], side: in
             break
         ring.append(way.outgoing.road)
         junctions.append(at)
-    if abs(turned - 2 * math.pi) > FULL or len(set(junctions)) < max(2, len(ring)):
+    if abs(turned - 2 * math.pi) > FULL or len(set(junctions)) < len(ring):
         return None
     if any(len([a for a in network.junction(n).arms if a.end.road not in ring]) != 1 for n in junctions):
         return None

@@ -26,7 +26,7 @@ from roadgpt.check.matching import (
 from roadgpt.check.measures import (
     MeasuredJunction,
     MeasuredLanes,
-    is_beside_ramp,
+    is_beside_place,
     measure,
     measured_junctions,
     measured_map,
@@ -128,7 +128,7 @@ def _stretches(route: "Route", wide: Sequence[float]) -> list[tuple[float, Road]
     for start, member in route.roads:
         last = found[-1][1][-1] if found else None
         is_continued = RoadEnd(member.id, "start") in route.network.continued_at
-        is_part = last is not None and (start in wide or is_beside_ramp(route.network, last, member))
+        is_part = last is not None and (start in wide or is_beside_place(route.network, last, member))
         if is_continued and is_part:
             found[-1][1].append(member)
         else:

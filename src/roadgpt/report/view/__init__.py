@@ -31,7 +31,7 @@ from roadgpt.ground.mesh import GroundMesh, mesh_of, water_of
 from roadgpt.language.table import ROAD_USERS, WEATHER
 from roadgpt.network import network_of, only_road
 from roadgpt.network.markings import PaintedStroke, arrows, between_crosswalks, signs, strokes
-from roadgpt.network.paved import Area
+from roadgpt.network.paved import Area, bays_of
 from roadgpt.network.route import area_with_verges
 from roadgpt.network.structures import solids
 from roadgpt.network.surface import JunctionSurface, NetworkSurface, free_ends, triangulated
@@ -330,6 +330,7 @@ def network_values(route: Road, world: World) -> dict[str, Any]:
     """Returns everything that the HTML page shows of the network of a route, in metres."""
     network = network_of(route, world)
     parts = NetworkSurface.of(network)
+    bays = bays_of([each.road for each in network.roads_outside])
     roads = []
     for each in parts.roads:
         columns = road_columns(each.road, each.profile, median=between_crosswalks(network, each))
@@ -352,7 +353,7 @@ def network_values(route: Road, world: World) -> dict[str, Any]:
         ],
         "plan": {
             "ground": _rings(area_with_verges(network)) if parts.shoulder > 0 else [],
-            "paved": _rings(network.paved),
+            "paved": [ring for area in (network.paved, *bays) for ring in _rings(area)],
             "kerbed": [ring for area in parts.areas for island in area.kerbed for ring in _rings(island)],
             "green": [ring for area in parts.areas for island in area.green for ring in _rings(island)]
             if parts.shoulder > 0
@@ -448,6 +449,11 @@ def _lanes(profile: Profile, s: Array) -> dict[str, Any]:
     return {
         "bounds": [{"marking": mark, "t": _offsets(t)} for mark, t in profile.boundaries(s)],
         "driven": profile.boundaries_to_left,
+        "bays": [
+            [_offsets(t) for t in profile.edges_of(number, s)]
+            for number, lane in profile.lanes.items()
+            if lane.kind == "parking"
+        ],
         "middle": _offsets(profile.middle(s)),
         "rims": {"left": _offsets(rims.left), "right": _offsets(rims.right)},
         "shoulder": round(float(shoulder), MILLIMETRES),

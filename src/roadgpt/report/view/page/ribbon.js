@@ -103,7 +103,7 @@ function pavement(scene, origin, renderer) {
 
 // The surface of one road; `ends` says which of its ends are free, and both are if it says nothing.
 function sweep(paved, verge, road) {
-  const { bounds, rims, shoulder, median } = road.lanes;
+  const { bounds, bays, rims, shoulder, median } = road.lanes;
   const free = road.ends || [true, true];
   const { asphalt, concrete, gravel } = COLOURS;
   const [left, right] = [bounds[0].t, bounds[bounds.length - 1].t];
@@ -121,6 +121,7 @@ function sweep(paved, verge, road) {
       band(paved, road, road.s, [between(from, t, share0), 0], [between(from, t, share), 0], tone0, tone);
     });
   });
+  for (const [inner, outer] of bays) band(paved, road, road.s, [inner, 0], [outer, 0], asphalt);
   band(paved, road, road.s, [left, -THICK], [left, 0], concrete);
   band(paved, road, road.s, [right, 0], [right, -THICK], concrete);
   for (const end of [0, road.length].filter((_, i) => free[i])) cap(paved, road, end, offsetAt(road, left, end), offsetAt(road, right, end), concrete, end > 0);
