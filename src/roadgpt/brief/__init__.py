@@ -108,6 +108,7 @@ def read(
     words = words.encode("utf-8", "replace").decode()  # lone surrogates cannot be written to a file
     sized = None if reader == PLAN else said_map_size(words)
     reads: Any = reader_of(reader, chat)
+    brief: Brief
     heeds = {"trial": trial} if trial and getattr(reads, "takes_trials", False) else {}
     try:
         brief, too_much = reads.read(sized[1] if sized else words, **heeds), None

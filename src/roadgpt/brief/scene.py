@@ -66,6 +66,7 @@ MOST_MORE = 3
 """How many more of a kind there are at most where a scene says "2 or more"."""
 CAR, SIGNALS = "tested car", "lights"
 """Whose events are not those of an actor."""
+NEVER, LATE, ENDED = "it never happened that", "the tested car had passed before", "the drive ended before"
 LANES_AWAY = {"lane": 1, "far": 2}
 LEADS_BACK = 15.24  # m, on which the cones of roadworks lead back: 50 ft at least (MUTCD, table 6C-3)
 NARROW = 1.2  # m, the width of what has no doors

@@ -4,9 +4,9 @@ in the text that the model wrote.
 The schema has only the keywords that all servers accept: every field is required, no other fields are
 allowed, and lengths, limits and defaults are left out; patterns of texts are for servers that take them. The
 limits still hold, because every reply is validated against the pydantic model. Any field of a server's
-response may be missing or have the wrong type. Text around the JSON of the model is ignored: code fences, text
-before and after, and a model's reasoning. NaN and infinities, keys that occur twice with different values,
-extreme nesting and extreme length are rejected. Nothing is evaluated."""
+response may be missing or have the wrong type. Text around the JSON of the model is ignored: code fences,
+text before and after, and a model's reasoning. NaN and infinities, keys that occur twice with different
+values, extreme nesting and extreme length are rejected. Nothing is evaluated."""
 
 import json
 import math

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from roadgpt.brief.scene import AROUND, CAR, Event, Mark
+from roadgpt.brief.scene import AROUND, CAR, ENDED, NEVER, Event, Mark
 from roadgpt.drive.drive import PEDALS, RETURNS, RUN_IN, SCRIPT, Box, GivenTask, LaneMove
 from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.drivers.robot import Robot
@@ -30,7 +30,7 @@ from roadgpt.traffic.lateral import Lateral, Offsets
 from roadgpt.traffic.longitudinal import Longitudinal
 from roadgpt.traffic.maneuver import CHANGE, FAST, LATERAL, ROLL, STOP, Maneuver, Phase, drawn
 from roadgpt.traffic.places import SIGN, offset_of, stretch_of
-from roadgpt.traffic.traffic import ENDED, NEVER, T0, Stage
+from roadgpt.traffic.traffic import T0, Stage
 from roadgpt.traffic.triggers import Triggers
 
 if TYPE_CHECKING:
@@ -490,7 +490,8 @@ class ScriptHand:
             else:
                 self._phases = [] if each.what == "release" else self._triggers.phases(each)
             rest = self._maneuvers[self._begun :]
-            is_waiting, creeps = not rest[0].is_open if rest else self._world.scene.stays, each.what == "creep"
+            creeps = each.what == "creep"
+            is_waiting = not rest[0].is_open if rest else self._world.scene.stays
             is_waiting |= creeps and self._begun in (*self._places, *self._ends, *self._stretches)
             if "duration" not in each.n and (creeps or (each.what in ("stop", "pull_over") and is_waiting)):
                 self._phases.append(Phase(lasts=math.inf if is_waiting else ROLL))

@@ -6,7 +6,7 @@ from collections import Counter
 
 import numpy as np
 
-from roadgpt.brief.scene import HEAD_ON, LEAVES, MOST_MORE, STRUCK, Event, Role
+from roadgpt.brief.scene import ENDED, HEAD_ON, LATE, LEAVES, MOST_MORE, NEVER, STRUCK, Event, Role
 from roadgpt.geometry.boxes import corners, touch
 from roadgpt.language.table import MANEUVERS
 from roadgpt.network.line import SPACING, driven_line
@@ -18,7 +18,7 @@ from roadgpt.traffic.following import ALONG
 from roadgpt.traffic.performer import Performer
 from roadgpt.traffic.places import parked_rows, works_rows
 from roadgpt.traffic.placing import BEHIND, INTO, ONCOMING, STANDS, Placing
-from roadgpt.traffic.traffic import ENDED, LATE, NEVER, T0, Stage, Stretch
+from roadgpt.traffic.traffic import T0, Stage, Stretch
 
 UNCOVERED = 3.0  # s that who changes lanes has left before who stands behind it is reached
 IN_SIGHT = 150.0  # m ahead, in which somebody sees others in its lane

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
 T0 = 4.0  # s to a collision, at which Euro NCAP's tests begin
 Stretch = Literal["before", "now", "past"]
-NEVER, LATE, ENDED = "it never happened that", "the tested car had passed before", "the drive ended before"
 
 
 class Stage(NamedTuple):

@@ -10,11 +10,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from roadgpt.brief.scene import CAR, MIRROR, SIGNALS, STRUCK, Event
+from roadgpt.brief.scene import CAR, ENDED, MIRROR, SIGNALS, STRUCK, Event
 from roadgpt.language.names import Shown
 from roadgpt.language.table import MANEUVERS
 from roadgpt.traffic.script import how_many
-from roadgpt.traffic.traffic import ENDED
 from roadgpt.verdict.criteria import HITS, NAMED, Judged
 from roadgpt.verdict.oracle import has_departed
 from roadgpt.verdict.verdict import Incident

@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from roadgpt.brief.scene import NEVER
 from roadgpt.brief.visibility import weather_drawn
 from roadgpt.drive.company import heights_along, look, looks_of
 from roadgpt.drive.drive import COLUMNS
 from roadgpt.network.landscape import horizon_around
 from roadgpt.traffic.actor import STEP, Size
 from roadgpt.traffic.rehearsal import rehearsed
-from roadgpt.traffic.traffic import NEVER
 from roadgpt.verdict.criteria import ROBOT
 from roadgpt.verdict.measures import measure
 from roadgpt.verdict.oracle import BoolArray

@@ -6,13 +6,12 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from roadgpt.brief.scene import STRUCK, Event
+from roadgpt.brief.scene import LATE, NEVER, STRUCK, Event
 from roadgpt.drive.drive import PEDALS, RUN_IN, SCRIPT
 from roadgpt.drive.drive_monitor import STUCK_AMONG_OTHERS, STUCK_TIME
 from roadgpt.language.names import Face
 from roadgpt.language.table import VEHICLES
 from roadgpt.road.world import share_in_words
-from roadgpt.traffic.traffic import LATE, NEVER
 from roadgpt.verdict.criteria import (
     FREE,
     HITS,

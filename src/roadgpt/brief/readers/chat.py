@@ -228,8 +228,9 @@ def again(said: Sequence[str], what: str) -> str:
 def lost(brief: Brief, words: str) -> list[str]:
     """Returns sentences on the road users and the weather that the words name and a Brief has not, neither in
     its scene nor among its unused words. Cars are left out: the tested car is one."""
-    there = {*(role.kind for role in brief.scene.actors), *(air.kind for air in brief.scene.weather), "car"}
-    there |= {action.whom.split()[0] for action in brief.scene.actions if action.whom}
+    scene = brief.scene
+    there = {"car", *(str(role.kind) for role in scene.actors), *(str(air.kind) for air in scene.weather)}
+    there |= {action.whom.split()[0] for action in scene.actions if action.whom}
     named = [each for each in mentions_in(words) if not each.is_denied and each.before not in OWN]
     said = {each.name: words[each.start : each.end] for each in named if each.name not in there}
     unused = " ".join(brief.unused).lower()
