@@ -233,7 +233,7 @@ def _pattern_of_parts() -> str:
     action = rf"({does})( ({kinds}) [1-9][0-9]?)?{words(AN_ACTION, amount, place, event)}"
     actor = rf"({kinds}|{'|'.join(PLACES)}){words(AN_ACTOR, f'x{amount}', place, hits)}"
     itself = f"{TESTED_CAR}{words(ITSELF, 'parked left', 'parked right')}"
-    flows = rf"oncoming ({'|'.join(FLOWS)}|none)|parked ({'|'.join(SIDES)})"
+    flows = rf"oncoming ({'|'.join(FLOWS)}|none)|parked ({'|'.join(SIDES)}){words(A_ROW)}"
     patches = f"{SIGNAL}{words(A_SIGNAL)}|{SLIPPERY}{words(A_PATCH)}|{WORKS}{words(A_SITE)}"
     air = f"({'|'.join(WEATHER)})( {amount})?|{CLOCK} [0-9]{{1,2}}:[0-9]{{2}}|{'|'.join(CONDITIONS)}"
     land = f"({'|'.join(LANDFORMS)}){words(A_LAND, f'x{amount}')}"
@@ -418,7 +418,8 @@ def _read_network(line: str) -> Brief:
                 f"a plan gives {OF_WHOLE[name]}= twice: '{value}' and '{fields[name]}'; give it once"
             )
         fields[name] = fields[name] or value
-    stretches = first.model_copy(update=dict.fromkeys(OF_THE_START)), *others
+    unsaid = {name: Brief.model_fields[name].default for name in OF_THE_START}
+    stretches = first.model_copy(update=unsaid), *others
     return _made(Brief, {"junctions": tuple(junctions), "stretches": stretches, **fields}, line)
 
 
