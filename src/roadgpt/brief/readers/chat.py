@@ -67,7 +67,7 @@ def _rows() -> dict[str, str]:
     """Returns what the rules tell of the table of the language."""
     lone, sided = ([name for name, row in PLACES.items() if bool(row.side) == has] for has in (False, True))
     airs = ((name, row.usual[0], "mm/h" if row.falls else "metres of sight") for name, row in WEATHER.items())
-    own = (name.join(["", " car 1"]) if name in AROUND else _action(name) for name in OF_ITSELF)
+    own = (_action(name, *["car 1"] * (name in AROUND)) for name in OF_ITSELF)
     return {
         "who": _or(ROAD_USERS),
         "lone": _or(lone),
@@ -88,12 +88,12 @@ def _number(name: str) -> str:
     return f"{NUMBERS[name].key}= ({NUMBERS[name].said.format('..')})"
 
 
-def _action(name: What) -> str:
+def _action(name: What, *whom: str) -> str:
     row = MANEUVERS[name]
     keys = [NUMBERS[each].key for each in row.numbers]
     usual = "" if row.usual is None else f" (usually {row.usual:g})"
-    first = [f"[{key}]{usual}" for key in keys[:1]]
-    return " ".join([name, *["left|right"] * row.side, *first, *(f"{key}=" for key in keys[1:])])
+    numbers = [] if whom else [*(f"[{key}]{usual}" for key in keys[:1]), *(f"{key}=" for key in keys[1:])]
+    return " ".join([name, *whom, *["left|right"] * row.side, *numbers])
 
 
 def _by_place(names: Sequence[Any], rows: Any, places: str, said: Callable[[Any], str]) -> str:
