@@ -201,7 +201,7 @@ def test_the_grammar_and_the_prompt_give_a_side_to_whom_the_language_gives_one()
     assert {opposite, *re.findall(r"[a-z]+", more)} - {"left", "right"} == beside
     assert {*re.findall(r"[a-z]+", lone)} == {*PLACES} - beside
     own = {what for what in MANEUVERS if takes(f"ego: {what} left")}
-    assert {*re.findall(r"(\w+) left\|right", RULES)} == sided | own
+    assert {*re.findall(r"(\w+)(?: car 1)? left\|right", RULES)} == sided | own
 
 
 def test_who_leaves_the_next_lane_away_from_the_tested_car_gets_a_lane_to_go_to() -> None:
