@@ -392,8 +392,13 @@ def test_roadworks_for_which_a_road_has_no_place_are_refused(works, says):
         works_rows(road, bare, 1)
 
 
-@pytest.mark.parametrize("scene", ["ego parked right: pull_out; roadworks closed s=5",
-                                   "ego v=0 s=40: release time=4; roadworks narrowed s=5 shift=2.5"])  # fmt: skip
+@pytest.mark.parametrize(
+    "scene",
+    [
+        "ego parked right: pull_out; roadworks closed s=5",
+        "ego v=0 s=40: release time=4; roadworks narrowed s=5 shift=2.5",
+    ],
+)
 def test_roadworks_in_the_way_of_the_car_at_its_start_are_refused_by_one_sentence(scene):
     road, world, _ = made("straight 400 | lanes=1 against=1")
     with pytest.raises(UsageError, match=r"roadworks .* in the way of the tested car, .* or later"):
