@@ -34,7 +34,7 @@ FEW = {
     "roadgpt_edit": 107,
     "roadgpt_film": 25,
     "roadgpt_formats": 150,
-    "roadgpt_mcp": 33,
+    "roadgpt_mcp": 28,
     "roadgpt_sbft": 58,
 }  # names of roadgpt that each may import
 HALLWAY = {
