@@ -1,10 +1,11 @@
 """How a server is brought to answer: the strictest way first, remembered, with patience where it helps."""
 
+import json
 import time
 from typing import Any
 
 import pytest
-from pydantic import BaseModel
+from pydantic import BaseModel, Field
 
 from chat.stub_server import (
     HeardRequest,
@@ -70,6 +71,33 @@ def test_plain_text_is_asked_for_where_needed_and_that_is_remembered(
     stub.play(only(*knows, text=text))
     assert total(chat_with(stub)) == 4
     assert stub.response_formats == response_formats[-1:]
+
+
+class Code(BaseModel):
+    code: str = Field(json_schema_extra={"pattern": "^[a-z]{3}$"})
+
+
+def test_a_server_without_patterns_gets_the_schema_without_them_and_that_is_remembered(
+    stub: StubServer,
+) -> None:
+    def scene(request: HeardRequest, handler: Any) -> None:
+        has = '"pattern"' in json.dumps(request.body["response_format"])
+        (fails(400, "schema keyword 'pattern' is not supported") if has else says('{"code": "abc"}'))(
+            request, handler
+        )
+
+    stub.play(scene)
+    chat = chat_with(stub)
+    assert chat.ask(QUESTION, Code).data == chat.ask(QUESTION, Code).data == Code(code="abc")
+    assert [*stub.response_formats] == ["json_schema"] * 3
+    assert [json.dumps(each.body).count("[a-z]{3}") for each in stub.requests] == [1, 0, 0]
+
+
+def test_patterns_are_never_pasted_into_the_words(stub: StubServer) -> None:
+    stub.play(only("text", text='{"code": "abc"}'))
+    chat_with(stub).ask(QUESTION, Code)
+    assert stub.response_formats == ["json_schema", "json_schema", "text"]
+    assert ["[a-z]{3}" in json.dumps(each.body) for each in stub.requests] == [True, False, False]
 
 
 def test_without_a_format_the_schema_stands_in_the_words(stub: StubServer) -> None:
