@@ -128,7 +128,8 @@ def written(names: Iterable[str]) -> list[str]:
 WAYS = re.compile(r"(?<=route=)(?:left|right|straight)(?:[+ ](?:left|right|straight))*")
 """The ways of a route through a map. As tokens they follow each other without a "+"."""
 IN_TEXTS = {
-    "metres": "metres", "percent": "percent", "km/h": "kmh", "m/s sideways": "kmh", "m/s2": "mps2",
+    "metres": "metres", "percent": "percent", "degrees": "degrees", "km/h": "kmh", "m/s sideways": "kmh",
+    "m/s2": "mps2",
 }  # fmt: skip
 """The units in which texts give numbers of a scene, by those of the table."""
 UNIT_OF = {
