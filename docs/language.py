@@ -1,5 +1,5 @@
-"""Writes docs/reference/road-users.md from the table of the language, and docs/how-to/write-plans.md from what
-agents are told of it."""
+"""Writes docs/reference/road-users.md from the table of the language, and docs/how-to/write-plans.md from
+what agents are told of it."""
 
 from pathlib import Path
 
@@ -83,7 +83,7 @@ def plans() -> str:
         "weather](../reference/road-users.md).\n\nA plan is one line:\n",
         f"{form}\n\n{numbers}\n",
         "## Texts with their plans\n",
-        "`roadgpt run --plan \"...\" --driver robot` drives each as told; under it, what RoadGPT reads in it.\n",
+        '`roadgpt run --plan "..." --driver robot` drives each as told; below stands how RoadGPT reads it.\n',
     ]
     for worked in DATA["worked"]:
         said = f"*{sentence(read(worked['plan'], 'plan', map_size=None))}* {worked['says']}"
@@ -97,7 +97,8 @@ def plans() -> str:
             "## What no plan can say\n",
             "Leave it out and keep the text beside the plan; or take the nearest word that the test does not "
             "depend on (dusk: `low_sun` or\n`night`), name what is seen but not built in `beside(...)`, or "
-            "[add a row](add-a-part.md#a-road-user-or-weather). Nothing is guessed: an unknown word is refused.\n",
+            "[add a row](add-a-part.md#a-road-user-or-weather). "
+            "Nothing is guessed: an unknown word is refused.\n",
         ]
     )
 
