@@ -122,7 +122,7 @@ def test_what_cannot_be_done_is_told_and_nothing_is_written(words: list[str], ad
 
 
 def test_a_language_model_reads_changes_too(stub: StubServer) -> None:
-    stub.play(says('{"changes": ["turn 2: angle =70"], "unused": ["please"]}'))
+    stub.play(says('{"changes": ["turn 2: angle =70"], "scene": [], "unused": ["please"]}'))
     more = ("--reader", "chat", "--base-url", stub.url, "--model", "m", "--no-drive", "--no-plot", "--json")
     result = invoke("edit", "design.json", f"{WORDS}, please", *more)
     assert result.exit_code == 0, result.output
