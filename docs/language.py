@@ -1,10 +1,16 @@
-"""Writes docs/reference/road-users.md from the table of the language."""
+"""Writes docs/reference/road-users.md from the table of the language, and docs/how-to/write-plans.md from
+what agents are told of it."""
 
 from pathlib import Path
 
+from roadgpt.brief import read, sentence
+from roadgpt.brief.readers.plan import PlanReader
+from roadgpt.errors import BriefError
 from roadgpt.language.table import MANEUVERS, NUMBERS, PLACES, ROAD_USERS, WEATHER, Words, one_of
+from roadgpt_mcp.knowledge import DATA, topics
 
-PAGE = Path(__file__).parent / "reference" / "road-users.md"
+DOCS = Path(__file__).parent
+WRONG = "turn left left 90; straight 40 && truck gap=30: brake 6; wet"
 LANGUAGES = {"en": "English", "de": "German", "fr": "French", "es": "Spanish", "it": "Italian"}
 
 
@@ -14,8 +20,8 @@ def said(*lists: Words) -> str:
     return ", ".join(dict.fromkeys(each[0][0].format("...") for each in found if each))
 
 
-def page() -> str:
-    """Returns the whole page."""
+def road_users() -> str:
+    """Returns the page of road users, places, maneuvers and weather."""
     out = [
         "# Road users, places, maneuvers and weather\n",
         "Written by `make docs` from the table of the language (`src/roadgpt/language/`), which says where "
@@ -60,5 +66,45 @@ def page() -> str:
     return "\n".join([*out, f"\nLong vehicles ({known}) are one stiff body each.\n"])
 
 
+def plans() -> str:
+    """Returns the page for people who write plans."""
+    told = topics("commands")
+    form, numbers = told["overview"].split("\n\n")[1:3]
+    steps = told["checking"].partition("\n")[2].partition("\n\n")[0]
+    try:
+        PlanReader().read(WRONG)
+    except BriefError as error:
+        objections = f"roadgpt: {error}"
+    out = [
+        "# Write plans\n",
+        "A plan leaves nothing to interpretation: RoadGPT builds what stands there, or says what it cannot. "
+        "Written by `make docs`\nfrom what [agents](use-with-agents.md) are told. All words: "
+        "[plans](../reference/plans.md), [road users, places, maneuvers and "
+        "weather](../reference/road-users.md).\n\nA plan is one line:\n",
+        f"{form}\n\n{numbers}\n",
+        "## Texts with their plans\n",
+        '`roadgpt run --plan "..." --driver robot` drives each as told; below stands how RoadGPT reads it.\n',
+    ]
+    for worked in DATA["worked"]:
+        said = f"*{sentence(read(worked['plan'], 'plan', map_size=None))}* {worked['says']}"
+        out.append(f"> {worked['text']}\n\n```plan\n{worked['plan']}\n```\n\n{said}\n")
+    return "\n".join(
+        [
+            *out,
+            "## Check a plan\n",
+            "`--plan` is short for `--reader plan`, also in campaigns. All objections come at once:\n",
+            f'```console\n$ roadgpt read --plan "{WRONG}"\n{objections}\n```\n\n{steps}\n',
+            "## What no plan can say\n",
+            "Leave it out and keep the text beside the plan; or take the nearest word that the test does not "
+            "depend on (dusk: `low_sun` or\n`night`), name what is seen but not built in `beside(...)`, or "
+            "[add a row](add-a-part.md#a-road-user-or-weather). "
+            "Nothing is guessed: an unknown word is refused.\n",
+        ]
+    )
+
+
+PAGES = {"reference/road-users.md": road_users, "how-to/write-plans.md": plans}
+
 if __name__ == "__main__":
-    PAGE.write_text(page(), encoding="utf-8")
+    for name, page in PAGES.items():
+        (DOCS / name).write_text(page(), encoding="utf-8")

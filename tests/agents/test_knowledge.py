@@ -1,6 +1,7 @@
 """What agents are told of the language: complete, short, and true when it is built and driven."""
 
 import re
+import shlex
 import sys
 from pathlib import Path
 
@@ -14,6 +15,8 @@ from roadgpt.run import Setup, perform
 from roadgpt_mcp.knowledge import DATA, skill, topics
 
 MOST_WORDS = 2500
+PAGE = (Path(__file__).parents[2] / "docs" / "how-to" / "write-plans.md").read_text(encoding="utf-8")
+PLANS = re.findall("^```plan\n(.+)\n```$", PAGE, re.M)
 
 
 def test_the_skill_is_short_and_says_what_it_is_for(tmp_path: Path) -> None:
@@ -64,14 +67,28 @@ def test_all_plans_in_the_text_can_be_read() -> None:
             assert read_change_plan(plan) if name == "changes" else read(plan, "plan")
 
 
-@pytest.mark.parametrize("worked", DATA["worked"], ids=lambda worked: worked["text"][:20])
-def test_the_worked_plans_happen_as_told_with_the_robot(worked: dict[str, str]) -> None:
-    run = perform(worked["plan"], 1, setup=Setup(reader="plan", driver="robot"))
-    assert run.outcome in ("PASS", "FAIL"), run.description  # a robot runs into who is in its way
+def test_each_text_stands_with_its_plan_for_people_too() -> None:
+    assert re.findall("^> (.+)\n\n```plan\n", PAGE, re.M) == [worked["text"] for worked in DATA["worked"]]
+    assert 6 <= len(PLANS) == len(DATA["worked"])
+
+
+def test_the_page_shows_what_the_command_says_of_a_wrong_plan() -> None:
+    found = re.search("^```console\n\\$ roadgpt (.+)\n((?:.+\n)+)```", PAGE, re.M)
+    assert found
+    told = invoke(*shlex.split(found[1]))
+    assert (told.exit_code, told.output) == (2, found[2])
+    assert told.output.count("\n- ") > 1
+
+
+@pytest.mark.parametrize("plan", PLANS)
+def test_the_worked_plans_happen_as_told_with_the_robot(plan: str) -> None:
+    run = perform(plan, 1, setup=Setup(reader="plan", driver="robot"))
+    # a robot runs into who is in its way
+    assert run.outcome in ("PASS", "FAIL", "UNAVOIDABLE"), run.description
     assert run.verdict is not None
     events = run.verdict.events or ()
     assert not [event.why for event in events if event.time is None]
-    assert len(events) >= len(re.findall(r"[:,] (?=[a-z])", worked["plan"].partition("&&")[2]))
+    assert len(events) >= len(re.findall(r"[:,] (?=[a-z])", plan.partition("&&")[2]))
 
 
 def test_without_the_extra_a_sentence_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:

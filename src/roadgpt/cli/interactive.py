@@ -9,7 +9,8 @@ import click
 
 from roadgpt import brief as reading
 from roadgpt import plugins, stopping
-from roadgpt.brief.plan import read_plan
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.cli.asking import asked, made_clear
 from roadgpt.cli.commands import make
 from roadgpt.cli.options import HOW_MANY
 from roadgpt.cli.screen import Screen
@@ -17,8 +18,6 @@ from roadgpt.cli.streams import warn
 from roadgpt.errors import RoadGPTError
 
 USUAL_ROADS = 3
-ENOUGH = {"exit", "quit", "bye", "q"}
-HELP = {"help", "?", "hilfe"}
 
 CHANGES = """\
 Say what to change, for example:
@@ -51,7 +50,7 @@ def converse() -> None:
             import readline  # noqa: F401  importing it switches on arrow keys and history
     click.echo(f"{HELLO}\n")
     with suppress(EOFError):
-        while words := _asked("description> ", EXPLAINED):
+        while words := asked("description> ", EXPLAINED):
             try:
                 meant = _understood(words)  # reports what cannot be read, before it asks for a number
                 if meant is None:
@@ -67,18 +66,6 @@ def converse() -> None:
             click.echo()
 
 
-def _asked(question: str, explained: str = "") -> str:
-    """Returns the answer without blanks around it; explains, and asks again, if it asks for help. Raises
-    EOFError if the user wants to leave."""
-    while True:
-        answer = input(question).strip()
-        if answer.lower() in ENOUGH:
-            raise EOFError
-        if answer.lower() not in HELP or not explained:
-            return answer
-        click.echo(f"{explained}\n")
-
-
 def _understood(words: str) -> str | None:
     """Returns the plan to build instead of the words, "" to build the words, and None if the user wants to
     say it in other words. If the reader is not sure, asks which of two readings is meant."""
@@ -86,19 +73,22 @@ def _understood(words: str) -> str | None:
         brief = reading.read(words, is_map_fixed=False)
     except reading.AnotherRoadError as error:
         click.echo(f"{error.offer}: {make.reading(error.brief)}")
-        answer = _asked("1 to build that, or an empty line to say it in other words> ")
+        answer = asked("1 to build that, or an empty line to say it in other words> ")
         return error.plan if answer == "1" else None
-    if not brief.other:
-        return ""
-    other = make.reading(read_plan(brief.other))
-    click.echo(f"I am not sure what is meant:\n  1  {make.reading(brief)}\n  2  {other}")
-    answer = _asked("1, 2, or an empty line to say it in other words> ")
-    return {"1": "", "2": brief.other}.get(answer)
+    meant = brief.model_copy(update={"other": ""})
+    if brief.other:
+        other = read_plan(brief.other)
+        click.echo(f"I am not sure what is meant:\n  1  {make.reading(brief)}\n  2  {make.reading(other)}")
+        if (answer := asked("1, 2, or an empty line to say it in other words> ")) not in ("1", "2"):
+            return None
+        meant = meant if answer == "1" else other
+    clear = made_clear(meant, of_numbers=False)
+    return "" if plan(clear) == plan(brief) else plan(clear)
 
 
 def _how_many() -> int:
     while True:
-        answer = _asked(f"how many roads [{USUAL_ROADS}]> ", EXPLAINED)
+        answer = asked(f"how many roads [{USUAL_ROADS}]> ", EXPLAINED)
         try:
             return HOW_MANY(answer) if answer else USUAL_ROADS
         except click.BadParameter as error:
@@ -110,7 +100,7 @@ def _change(roads: list[str]) -> None:
         return  # the package that brings it is not installed
     edit: click.Command = plugins.find("commands", "edit")
     question = "change it? > " if len(roads) == 1 else "change one? (2: make the last turn sharper) > "
-    while roads and (answer := _asked(question, CHANGES)):
+    while roads and (answer := asked(question, CHANGES)):
         match = re.match(r"(?:road\s+)?(\d+)\s*[:,]?\s+(.*)", answer, re.IGNORECASE | re.DOTALL)
         is_numbered = match is not None and 1 <= int(match[1]) <= len(roads)
         number, words = (int(match[1]) - 1, match[2]) if match and is_numbered else (0, answer)

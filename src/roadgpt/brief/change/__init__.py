@@ -11,6 +11,7 @@ from dataclasses import replace
 from functools import cache
 
 from roadgpt.brief.beside import slipperiest
+from roadgpt.brief.change.clauses import told_in, unnamed_in
 from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.change.request import EditRequest, refuse_clashes
 from roadgpt.brief.change.spoken import spoken
@@ -24,6 +25,7 @@ from roadgpt.errors import BriefError, EditError
 from roadgpt.language.table import SURFACES
 
 ADVICE = "say for example: make the second turn sharper"
+BY_RULES = 0.9  # how sure a reading by rules alone is
 SHOWN = 60
 """The largest number of letters of a request that a message repeats."""
 
@@ -61,14 +63,19 @@ def read_request(words: str, chat: ChatSettings | None = None) -> EditRequest:
         request = request_by_chat(words, chat, surface)
         unused = request.unused if surface else tuple(dict.fromkeys((*named, *request.unused)))
         return replace(request, unused=unused)
+    told, rest, dropped = told_in(words)
+    if told:
+        own = replace(read_change_plan(f"{SCENE} {'; '.join(told)}"), words=words, unused=tuple(dropped))
+        return replace(own, confidence=BY_RULES) if not rest else _with_rest(own, ", ".join(rest))
     try:
         reading = _reader().read_change(words, lambda line: change_plan(read_change_plan(line)))
     except BriefError as error:
         raise EditError(str(error)) from error
     surface, named = _surface_in(words)
-    unused = tuple(dict.fromkeys((*(() if SCENE in reading.plan else named), *reading.unused)))
+    missed = unnamed_in(words, reading.plan) if SCENE in reading.plan else named
+    unused = tuple(dict.fromkeys((*missed, *reading.unused)))
     if surface:
-        unused = tuple(word for word in reading.unused if word not in named)
+        unused = tuple(word for word in unused if word not in named)
         if reading.plan.split() == ["!impossible", surface]:
             return EditRequest(words, (), unused, reading.confidence, surface=surface)
     if reading.plan.startswith("!"):
@@ -82,6 +89,16 @@ def read_request(words: str, chat: ChatSettings | None = None) -> EditRequest:
         others=reading.others,
         surface=surface,
     )
+
+
+def _with_rest(told: EditRequest, words: str) -> EditRequest:
+    """Returns a request with what the networks read in other words, which are unused where it is doubtful."""
+    with suppress(EditError):
+        rest = read_request(words)
+        if rest.confidence >= DOUBT:
+            scene, unused = (*told.scene, *rest.scene), (*told.unused, *rest.unused)
+            return replace(rest, words=told.words, scene=scene, unused=unused, others=())
+    return replace(told, unused=(*told.unused, words), confidence=DOUBT)
 
 
 def _surface_in(words: str) -> tuple[str, tuple[str, ...]]:

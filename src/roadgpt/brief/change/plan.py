@@ -217,9 +217,8 @@ SPACES = re.compile(r" (?=[(),=])|(?<=[(=]) ")
 KINDS = frozenset(named_in("features")) - {"straight", "turn"}
 NOUNS, ENDS = named_in("nouns"), cast("Mapping[str, Literal['start', 'end', 'middle']]", ROADS["ends"])
 PLACE, NEW = language(PARTS["place"]), language(PARTS["new"])
-THINGS = language(
-    {"every": PARTS["place"]["every"], **{name: AN_ACTOR.parts[name] for name in ("where", "side")}}
-)
+SIDES = AN_ACTOR.parts["side"]._replace(words={**AN_ACTOR.parts["side"].words, "other": "other"})
+THINGS = language({"every": PARTS["place"]["every"], "where": AN_ACTOR.parts["where"], "side": SIDES})
 POSITIONS: Mapping[str, Mapping[str, bool]] = ROADS["positions"]
 NEXT_TO, MOVES = ([name for name in POSITIONS if POSITIONS[name].get(how)] for how in ("new", "moved"))
 """Where an element can be added, relative to others, and where a turn can be moved."""

@@ -216,7 +216,8 @@ class Things:
     """Positions among those that fit, counted from 1, or from -1 backwards from the last one."""
     every: bool = False
     where: Where | None = None
-    side: Side | Literal["opposite"] | None = None
+    side: Side | Literal["opposite", "other"] | None = None
+    """"other" is the one on which it is not now."""
 
 
 @dataclass(frozen=True, slots=True)

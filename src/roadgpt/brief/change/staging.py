@@ -10,7 +10,8 @@ from pydantic import ValidationError
 from roadgpt.brief.amount import Amount, exactly, span
 from roadgpt.brief.change.plan import LEVELS, LISTS, OF_SINGLE, SINGLE
 from roadgpt.brief.change.request import SceneChange, Things, Value
-from roadgpt.brief.scene import LAND_KINDS, ONE_OF, Action, Air, Mark, Role, Scene
+from roadgpt.brief.model import OTHER_SIDE
+from roadgpt.brief.scene import LAND_KINDS, ON_ITS_WAY, ONE_OF, Action, Air, Mark, Role, Scene
 from roadgpt.errors import EditError, UnclearPlaceError
 from roadgpt.language.table import (
     FLOWS,
@@ -194,10 +195,13 @@ class _Stage:
             if change.what == "count":
                 return thing.model_copy(update={"count": _amount(change, thing.count, str(thing))})
             if change.what == "add":
-                return thing.model_copy(update={"actions": (*thing.actions, change.new)})
+                is_own = isinstance(change.new, Action) and change.new.what in ON_ITS_WAY
+                kept = [each for each in thing.actions if not (is_own and each.what in ON_ITS_WAY)]
+                return thing.model_copy(update={"actions": (*kept, change.new)})
             form = change.form or Things("")
             kind, where = form.name or thing.kind, form.where or thing.where
             side = form.side if form.where else form.side or thing.side
+            side = OTHER_SIDE.get(thing.side, thing.side) if side == "other" else side
             return thing.model_copy(update={"kind": kind, "where": where, "side": side})
         actions = list[Action]()
         for action in thing.actions:

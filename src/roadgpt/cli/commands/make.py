@@ -1,6 +1,7 @@
 """Commands that make or drive roads: ``roadgpt run``, ``read`` and ``drive``."""
 
 import json
+import shlex
 import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -240,6 +241,7 @@ READ_OPTIONS = (
     *named(options.WORLD, "map_size", "friction"),
     Option("--table as_table", "Print a row for each turn and straight.", bool),
     options.json_option("Print the interpretation as JSON."),
+    Option("--ask asks", "Ask what is doubtful or open, and print the plan that the answers make.", bool),
     Option("--alternatives number", "Show up to this many different interpretations.", FEW, 1),
     *options.CHAT,
 )
@@ -247,18 +249,23 @@ READ_OPTIONS = (
 
 @click.command(cls=GroupedCommand, params=[options.WORDS, *READ_OPTIONS])
 def read(
-    words: tuple[str, ...], weights: Path | None, as_table: bool, as_json: bool, number: int, **rest: Any
-) -> None:
+    words: tuple[str, ...], weights: Path | None, as_table: bool, as_json: bool, asks: bool, number: int,
+    **rest: Any,
+) -> None:  # fmt: skip
     """Show how RoadGPT interprets a description, how confident it is, and whether the road fits on the map.
 
     \b
     roadgpt read "uphill, 3 turns, the last one a hairpin"
     roadgpt read "drei Kurven, dann 80 m geradeaus bergab" --table
     roadgpt read "a road" --alternatives 3"""
-    from roadgpt.brief import alternatives
+    from roadgpt.brief import alternatives, sentence
+    from roadgpt.brief.plan import plan
+    from roadgpt.cli.asking import made_clear
     from roadgpt.design.room import world_for
     from roadgpt.run import Setup, brief_of
 
+    if asks and (as_json or number > 1 or not sys.stdin.isatty()):
+        raise UsageError("--ask is for one reading at a terminal; leave it out, or --json and --alternatives")
     world, reader, text = options.world_of(rest), options.reader_of(rest), " ".join(words)
     if weights is not None:
         if reader != "model":
@@ -277,6 +284,9 @@ def read(
         click.echo(understood(briefs[0], world_for(briefs[0], world), world))
         if as_table:
             click.echo(_table(briefs[0]))
+        if asks:
+            meant = made_clear(briefs[0])
+            click.echo(f"{sentence(meant)}\n  (for that: --plan {shlex.quote(plan(meant))})")
 
 
 def _as_data(brief: "Brief", world: "World", usual: "World") -> dict[str, object]:
