@@ -17,7 +17,7 @@ from roadgpt.brief.feasible import check
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import SCENE, SCENE_PART, objections, read_plan
-from roadgpt.brief.readers.model.mentions import OWN, mentions_in
+from roadgpt.brief.readers.model.mentions import unused_in
 from roadgpt.brief.refusal import EXAMPLE, MOST_CHARACTERS
 from roadgpt.brief.scene import AROUND, Role
 from roadgpt.chat import Chat, ChatSettings, Message, configured, open_chat
@@ -227,18 +227,13 @@ def again(said: Sequence[str], what: str) -> str:
 
 def lost(brief: Brief, words: str) -> list[str]:
     """Returns sentences on the road users and the weather that the words name and a Brief has not, neither in
-    its scene nor among its unused words. Cars are left out: the tested car is one."""
-    scene = brief.scene
-    there = {"car", *(str(role.kind) for role in scene.actors), *(str(air.kind) for air in scene.weather)}
-    there |= {action.whom.split()[0] for action in scene.actions if action.whom}
-    named = [each for each in mentions_in(words) if not each.is_denied and each.before not in OWN]
-    said = {each.name: words[each.start : each.end] for each in named if each.name not in there}
+    its scene nor among its unused words."""
     unused = " ".join(brief.unused).lower()
     return [
         f"the description says '{word}', and the scene has no {name}: add it, or put the word under 'unused' "
         "if it is nobody and nothing there"
-        for name, word in said.items()
-        if word.lower() not in unused
+        for word, name in unused_in(brief, words).items()
+        if name in {*ROAD_USERS, *WEATHER} and word.lower() not in unused
     ]
 
 

@@ -26,7 +26,7 @@ from roadgpt.brief.readers.model.before import (
     other_script,
     without_asides,
 )
-from roadgpt.brief.readers.model.mentions import with_kinds, with_kinds_changed, with_known_words
+from roadgpt.brief.readers.model.mentions import unused_in, with_kinds, with_kinds_changed, with_known_words
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.number_words import COUNTED, plain
 from roadgpt.brief.readers.model.ring_sizes import with_diameters
@@ -134,7 +134,9 @@ class ModelReader:
 
         def named(brief: Brief) -> Brief:
             unused = tuple(instead.get(word, word) for word in brief.unused)
-            return with_kinds(brief.model_copy(update={"words": written, "unused": unused}), written)
+            brief = with_kinds(brief.model_copy(update={"words": written, "unused": unused}), written)
+            unused = tuple(dict.fromkeys((*brief.unused, *unused_in(brief, written))))
+            return brief.model_copy(update={"unused": unused})
 
         try:
             brief = named(self._brief(words, text, draft, trained))

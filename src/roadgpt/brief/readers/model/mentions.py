@@ -7,15 +7,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from typing import Any, NamedTuple, cast
 
-from roadgpt.brief.languages import FUNCTION_WORDS, language_of, word_set
+from roadgpt.brief.languages import FUNCTION_WORDS, TABLE, language_of, pattern_of, word_set
 from roadgpt.brief.model import Brief
-from roadgpt.brief.plan import SCENE
+from roadgpt.brief.plan import SCENE, plan
 from roadgpt.brief.readers.model.number_words import plain
 from roadgpt.brief.scene import Scene, usual_weather
 from roadgpt.language.names import ActorKind, WeatherKind
 from roadgpt.language.table import ROAD_USERS, WEATHER, RoadUser, WeatherRow, Words
 
 DENIED, ARTICLES = word_set("denying"), word_set("ones") | word_set("of_known")
+HAPPENING = {names: pattern_of(names, "happening") for names in TABLE["happening"]}
+"""What tells of deeds and places, by the words of plans for them."""
 AGAIN = word_set("of_known")
 """Words before somebody who has been named before."""
 OWN = word_set("of_oneself")
@@ -115,6 +117,23 @@ def _languages(said: str) -> list[str]:
     return [language_of(words)] if is_told else [*FUNCTION_WORDS]
 
 
+def unused_in(brief: Brief, words: str) -> dict[str, str]:
+    """Returns the words of a text that tell of road users, weather, deeds and places of which a Brief has
+    nothing, and by them what they name: a kind, or words of plans. Cars are left out: the tested car is one;
+    so is what is denied."""
+    scene, told = brief.scene, {*re.findall(r"[a-z_]+(?:=0\b)?", plan(brief))}
+    there = {"car", *(str(role.kind) for role in scene.actors), *(str(air.kind) for air in scene.weather)}
+    there |= {action.whom.split()[0] for action in scene.actions if action.whom}
+    named = [each for each in mentions_in(words) if not each.is_denied and each.before not in OWN]
+    found = {words[each.start : each.end]: str(each.name) for each in named if each.name not in there}
+    said = plain(words)
+    for names, pattern in HAPPENING.items():
+        for each in pattern.finditer(said) if told.isdisjoint(names.split()) else ():
+            if DENIED.isdisjoint(re.findall(r"\w+", said[: each.start()])[-3:]):
+                found.setdefault(words[each.start() : each.end()], names)
+    return found
+
+
 def with_known_words(words: str) -> tuple[str, dict[str, str]]:
     """Returns the words with those of kinds that the networks know in place of others that they have never
     seen, and what was written for each of them."""
@@ -153,10 +172,10 @@ def with_kinds(brief: Brief, words: str) -> Brief:
     return brief.model_copy(update=changes)
 
 
-def with_kinds_changed(plan: str, words: str) -> str:
+def with_kinds_changed(line: str, words: str) -> str:
     """Returns a plan of changes in which the kinds that the words name stand for those that a network knows;
     where the words also name one of these, they stay."""
-    road, mark, scene = plan.partition(SCENE)
+    road, mark, scene = line.partition(SCENE)
     named = {each.name for each in mentions_in(words)}
     for known in {known_as(name) for name in named} - named:
         like = [name for name in named if known_as(name) == known]
