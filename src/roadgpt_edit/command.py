@@ -118,7 +118,7 @@ def _print_edit(
     for change in edited.changes:
         screen.say(change)
     if edited.confidence < SURE:
-        screen.say(UNSURE.format(100 * edited.confidence))
+        screen.say(UNSURE.format(100 * edited.confidence, ""))
         if edited.other:
             screen.say(f'it could also mean: --plan "{edited.other}"')
     if edited.unused:

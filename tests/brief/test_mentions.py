@@ -4,7 +4,7 @@ import pytest
 
 from roadgpt.brief import read, sentence
 from roadgpt.brief.plan import read_plan
-from roadgpt.brief.readers.model.mentions import unused_in
+from roadgpt.brief.readers.model.mentions import unnamed_in, unused_in
 from roadgpt.brief.scenarios import scenario, scenarios
 
 
@@ -48,3 +48,25 @@ def test_the_reader_names_what_its_plan_does_not_tell() -> None:
     assert ("reverses" in told) == ("reverse" not in deeds)
     assert ("hits" in told) == (not any(actor.hits for actor in brief.scene.actors))
     assert "fog" not in told
+
+
+@pytest.mark.parametrize(
+    ("words", "line", "named"),
+    [
+        (
+            "An ambulance comes from the right.",
+            "crossroads && ambulance junction right; adult crossing left",
+            ["adult"],
+        ),
+        ("A pedestrian crosses.", "straight && adult crossing left; car ahead", []),
+        (
+            "The car in front brakes, then something falls.",
+            "straight && car ahead; lost_load ahead",
+            ["lost load"],
+        ),
+        ("Un camion suit le bus.", "straight && truck behind; bus ahead", []),
+    ],
+)
+def test_who_is_in_a_scene_and_in_no_word_is_told(words: str, line: str, named: list[str]) -> None:
+    brief = read_plan(line).model_copy(update={"words": words})
+    assert unnamed_in(brief) == named

@@ -7,7 +7,7 @@ from contextlib import suppress
 from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.languages import TABLE, pattern_of
 from roadgpt.brief.plan import SCENE
-from roadgpt.brief.readers.model.mentions import OWN, known_as, mentions_in
+from roadgpt.brief.readers.model.mentions import known_as, mentions_in
 from roadgpt.brief.readers.model.number_words import plain
 from roadgpt.errors import EditError
 from roadgpt.language.table import WEATHER
@@ -52,7 +52,7 @@ def unnamed_in(words: str, plan: str) -> tuple[str, ...]:
     """Returns the words that name others, or weather, of which a plan of changes of a scene says nothing."""
     told = {*re.findall(r"\w+", plan)}
     missed = [each for each in mentions_in(words) if not {each.name, known_as(each.name), "actor"} & told]
-    return tuple(words[each.start : each.end] for each in missed if each.before not in OWN)
+    return tuple(words[each.start : each.end] for each in missed if not each.is_own)
 
 
 def _who_in(clause: str, named: list[tuple[str, Span]]) -> tuple[str, list[Span]] | None:

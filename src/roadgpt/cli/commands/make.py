@@ -148,7 +148,7 @@ def tell_recording(screen: Screen, setup: "Setup") -> None:
         screen.say(f"note: {remark}")
 
 
-UNSURE = "perhaps not understood as meant ({:.0f} % sure), so check it or say it in other words"
+UNSURE = "perhaps not understood as meant ({:.0f} % sure{}), so check it or say it in other words"
 
 
 def understood(brief: "Brief", world: "World", given: "World") -> str:
@@ -158,7 +158,10 @@ def understood(brief: "Brief", world: "World", given: "World") -> str:
 
     told = f"I read this as: {reading(brief)}"
     if brief.confidence < SURE:
-        told += f"; {UNSURE.format(100 * brief.confidence)}"
+        from roadgpt.brief.readers.model.mentions import unnamed_in
+
+        unnamed = "".join(f"; no word names the {kind}" for kind in unnamed_in(brief))
+        told += f"; {UNSURE.format(100 * brief.confidence, unnamed)}"
     if brief.other:
         other = reading(read_plan(brief.other))
         told += f"\nit could also mean: {other}\n  (for that: --plan '{brief.other}')"

@@ -21,7 +21,7 @@ HAPPENING = {names: pattern_of(names, "happening") for names in TABLE["happening
 AGAIN = word_set("of_known")
 """Words before somebody who has been named before."""
 OWN = word_set("of_oneself")
-"""Words before the tested car."""
+"""Words before, or behind, the tested car."""
 
 
 class _Phrase(NamedTuple):
@@ -47,6 +47,8 @@ class Mention(NamedTuple):
     """The plain word before it."""
     is_denied: bool
     """Whether it is named as what is not there."""
+    is_own: bool
+    """Whether it is the tested car."""
 
 
 def _row_of(name: str) -> RoadUser | WeatherRow:
@@ -104,8 +106,9 @@ def mentions_in(words: str) -> Iterator[Mention]:
             name, is_many, is_seen = phrases[found[0]]
             *rest, last = ["", *re.findall(r"\w+", said[: found.start()])[-2:]]
             is_denied = last in DENIED or (last in ARTICLES and rest[-1] in DENIED)
+            is_own = not OWN.isdisjoint((last, *re.findall(r"\w+", said[found.end() :])[:1]))
             if name is not None:
-                yield Mention(name, is_many, is_seen, language, *found.span(), last, is_denied)
+                yield Mention(name, is_many, is_seen, language, *found.span(), last, is_denied, is_own)
         if pattern.search(said):
             return
 
@@ -124,7 +127,7 @@ def unused_in(brief: Brief, words: str) -> dict[str, str]:
     scene, told = brief.scene, {*re.findall(r"[a-z_]+(?:=0\b)?", plan(brief))}
     there = {"car", *(str(role.kind) for role in scene.actors), *(str(air.kind) for air in scene.weather)}
     there |= {action.whom.split()[0] for action in scene.actions if action.whom}
-    named = [each for each in mentions_in(words) if not each.is_denied and each.before not in OWN]
+    named = [each for each in mentions_in(words) if not (each.is_denied or each.is_own)]
     found = {words[each.start : each.end]: str(each.name) for each in named if each.name not in there}
     said = plain(words)
     for names, pattern in HAPPENING.items():
@@ -132,6 +135,15 @@ def unused_in(brief: Brief, words: str) -> dict[str, str]:
             if DENIED.isdisjoint(re.findall(r"\w+", said[: each.start()])[-3:]):
                 found.setdefault(words[each.start() : each.end()], names)
     return found
+
+
+def unnamed_in(brief: Brief) -> list[str]:
+    """Returns the kinds of others in the scene of a Brief of whose group its words name nobody. Cars are left
+    out: what they do often tells of them."""
+    rows = (_row_of(each.name) for each in mentions_in(brief.words))
+    named = {row.group for row in rows if isinstance(row, RoadUser)}
+    kinds = dict.fromkeys(role.kind for role in brief.scene.actors if role.kind != "car")
+    return [kind.replace("_", " ") for kind in kinds if ROAD_USERS[kind].group not in named]
 
 
 def with_known_words(words: str) -> tuple[str, dict[str, str]]:
@@ -194,11 +206,11 @@ def _unnamed(known: ActorKind, scene: Scene, told: list[Mention]) -> list[int]:
 
 def _once_each(told: list[Mention]) -> list[Mention]:
     """Returns the mentions without the tested car, and without those of somebody who was named before."""
-    out: list[Mention] = []
+    out, before = list[Mention](), set[str]()
     for each in told:
-        is_again = each.before in AGAIN and any(each.name == one.name for one in out)
-        if not is_again and not each.is_denied and each.before not in OWN:
+        if not (each.is_denied or each.is_own or (each.before in AGAIN and each.name in before)):
             out.append(each)
+        before.add(each.name)
     return out
 
 
