@@ -93,7 +93,7 @@ def plans() -> str:
             *out,
             "## Check a plan\n",
             "`--plan` is short for `--reader plan`, also in campaigns. All objections come at once:\n",
-            f'```console\n$ roadgpt read --plan "{WRONG}"\n{objections}\n```\n\n{steps}\n',
+            f'```text\n$ roadgpt read --plan "{WRONG}"\n{objections}\n```\n\n{steps}\n',
             "## What no plan can say\n",
             "Leave it out and keep the text beside the plan; or take the nearest word that the test does not "
             "depend on (dusk: `low_sun` or\n`night`), name what is seen but not built in `beside(...)`, or "

@@ -73,7 +73,7 @@ def test_each_text_stands_with_its_plan_for_people_too() -> None:
 
 
 def test_the_page_shows_what_the_command_says_of_a_wrong_plan() -> None:
-    found = re.search("^```console\n\\$ roadgpt (.+)\n((?:.+\n)+)```", PAGE, re.M)
+    found = re.search("^```text\n\\$ roadgpt (.+)\n((?:.+\n)+)```", PAGE, re.M)
     assert found
     told = invoke(*shlex.split(found[1]))
     assert (told.exit_code, told.output) == (2, found[2])
