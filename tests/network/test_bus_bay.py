@@ -1,5 +1,6 @@
 """Bus bays: how long and deep the file has them, and that a bus stands in one and pulls out."""
 
+import re
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
@@ -70,3 +71,22 @@ def test_its_plan_is_read_and_written_and_a_short_road_is_refused() -> None:
     assert plan(read_plan(WORDS)) == WORDS
     with pytest.raises(DesignError, match="a bus bay needs 58 m of the road behind it"):
         perform("straight 60 // bus_bay // straight 40", seed=1, setup=Setup(reader="plan"))
+
+
+def test_a_bus_that_is_parked_stands_in_the_bay_if_nothing_else_is_said() -> None:
+    words = f"{WORDS} && ego v=40; bus parked right: pull_out gap=20; bus parked left"
+    run = perform(words, seed=7, setup=Setup(driver="robot", reader="plan"))
+    assert run.road is not None
+    assert run.drive is not None
+    assert run.drive.others is not None
+    s, t = run.road.locate(*run.drive.others.states[0, :, :2].T)
+    assert s[0] == pytest.approx(80.0 + INTO + STANDS / 2, abs=2.5)
+    assert t[0] < -2.0 < 2.0 < t[1]
+
+
+def test_a_crosswalk_that_comes_too_soon_is_told_with_its_place() -> None:
+    words = "straight 90 // crosswalk // straight 90 && adult crosswalk right: cross"
+    run = perform(words, seed=1, setup=Setup(driver="robot", reader="plan"))
+    assert run.outcome == "INVALID"
+    (place,) = re.findall(r"its last crosswalk at (\d+) m", run.description)
+    assert 85 < int(place) < 95

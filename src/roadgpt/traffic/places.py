@@ -20,6 +20,7 @@ from roadgpt.network import is_route, network_of
 from roadgpt.network.lanes import lanes_of
 from roadgpt.network.line import SPACING, Line
 from roadgpt.network.markings import CROSSWALK
+from roadgpt.network.stretch import BAY as BAY_OF_BUS
 from roadgpt.plural import plural
 from roadgpt.traffic.actor import HEADING, SIZES, FloatArray
 from roadgpt.traffic.lane_map import LEAST
@@ -75,6 +76,16 @@ def offset_of(where: Where, side: Side | None, s: float, road: "Road", world: "W
     edges = getattr(profile.edges(around), side) - profile.middle(around)
     edge = float(edges.max() if side == "left" else edges.min())
     return edge + SIGN[side] * (CLEAR + width / 2 if where == "parked" else BESIDE)
+
+
+def bus_bays(road: "Road") -> list[tuple[float, Side]]:
+    """Returns the stations of the middles of the bus bays that a route passes, and on which side they are."""
+    middle = (BAY_OF_BUS[1][0] + BAY_OF_BUS[2][0]) / 2
+    return [
+        (start + middle, "left" if each.profile.left_hand else "right")
+        for start, each in (road.roads if is_route(road) else ())
+        if each.profile and "parking" in (strip.kind for strip in each.profile.along)
+    ]
 
 
 def _lanes_beside(s: float, road: "Road", world: "World", width: float) -> dict[str, list[float]]:

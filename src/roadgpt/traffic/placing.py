@@ -23,7 +23,7 @@ from roadgpt.traffic.following import time_over
 from roadgpt.traffic.lateral import SHARPEST, Lateral, Offsets
 from roadgpt.traffic.longitudinal import EASY, Longitudinal, reach
 from roadgpt.traffic.maneuver import LATERAL, REVERSING, ROLL, TURNING, Maneuver, drawn
-from roadgpt.traffic.places import stretch_of
+from roadgpt.traffic.places import bus_bays, stretch_of
 from roadgpt.traffic.traffic import Aiming, Stage
 from roadgpt.traffic.triggers import LAST, Triggers
 from roadgpt.traffic.ways import way_of
@@ -57,6 +57,9 @@ class Placing:
         self.stage, self.role, self.met, self.copy = stage, role, met, len(alike)
         self.size, where = SIZES[role.kind], role.where
         self.n, numbers = drawn(role, rng), [drawn(each, rng) for each in role.actions]
+        if role.kind == "bus" and where == "parked" and not (role.at or alike or {*PLACED} & {*self.n}):
+            bays = [s for s, side in bus_bays(stage.road) if s > met.s and role.side in (None, side)]
+            self.n |= {"station": bays[0]} if bays else {}
         self.n |= {field: alike[0].n[field] for field in PLACED if alike and getattr(role, field)}
         is_in_front = role.hits in ("front", "rear") and where in ("ahead", "behind", "oncoming")
         self.on_face = (

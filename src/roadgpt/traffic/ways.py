@@ -124,10 +124,12 @@ def _crosswalk(near: float, road: Road, is_open: bool) -> float:
             if turns and any(other.passage is way for other in found[n + 1 :]):
                 continue
         return float(each.s)
-    raise SceneError(
-        f"the route passes no crosswalk after {near:.0f} m; write // crosswalk //, or crosswalk behind a "
-        "junction"
-    )
+    if road.crosswalks:
+        raise SceneError(
+            f"the route passes its last crosswalk at {road.crosswalks[-1].s:.0f} m, and the tested car is "
+            f"there too soon: give it a lower speed, or more road before, at least {near:.0f} m in all"
+        )
+    raise SceneError("the route passes no crosswalk; write // crosswalk //, or crosswalk behind a junction")
 
 
 class _Around(NamedTuple):
