@@ -292,6 +292,7 @@ class Campaign:
             write_tables(store, self.folder)
             if self.draw is not None:
                 self.draw.of_campaign(self.folder)
+            sweep(self.folder / RUNS)  # of workers that were killed
         store.finish()
         self.is_over = True
 
